@@ -1,0 +1,40 @@
+# SPDX-License-Identifier: BSD-3-Clause
+# Flags of every target: warnings, sanitizers, no fast-math and nothing tied to the building machine's processor.
+set(CMAKE_CXX_STANDARD 17)
+set(CMAKE_C_STANDARD 99)
+foreach(language C CXX)
+    set(CMAKE_${language}_STANDARD_REQUIRED ON)
+    set(CMAKE_${language}_EXTENSIONS OFF)  # also keeps gcc from contracting a * b + c where the processor has FMA
+    set(CMAKE_${language}_VISIBILITY_PRESET hidden)
+endforeach()
+set(CMAKE_VISIBILITY_INLINES_HIDDEN ON)
+
+if(PROJECT_IS_TOP_LEVEL)
+    if(NOT CMAKE_BUILD_TYPE AND NOT CMAKE_CONFIGURATION_TYPES)
+        set(CMAKE_BUILD_TYPE Release CACHE STRING "Debug, Release, RelWithDebInfo or MinSizeRel" FORCE)
+    endif()
+    set(CMAKE_RUNTIME_OUTPUT_DIRECTORY "${PROJECT_BINARY_DIR}/bin")
+    set(CMAKE_LIBRARY_OUTPUT_DIRECTORY "${PROJECT_BINARY_DIR}/lib")
+    find_program(LIMITCL_CCACHE ccache)
+    if(LIMITCL_CCACHE AND NOT DEFINED CMAKE_CXX_COMPILER_LAUNCHER)
+        set(CMAKE_C_COMPILER_LAUNCHER "${LIMITCL_CCACHE}")
+        set(CMAKE_CXX_COMPILER_LAUNCHER "${LIMITCL_CCACHE}")
+    endif()
+endif()
+
+add_compile_options(-Wall -Wextra)
+if(LIMITCL_WERROR AND NOT LIMITCL_SANITIZE)  # gcc's flow warnings are unreliable in sanitized code
+    add_compile_options(-Werror)
+endif()
+if(LIMITCL_SANITIZE)
+    # -O1 keeps the suite quick; a finding stops the program, so that a test cannot pass over it.
+    add_compile_options(-fsanitize=${LIMITCL_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer -O1)
+    add_compile_options($<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized>)
+    add_link_options(-fsanitize=${LIMITCL_SANITIZE})
+endif()
+if(LIMITCL_BUILD_FUZZERS)
+    if(NOT CMAKE_CXX_COMPILER_ID MATCHES Clang)
+        message(FATAL_ERROR "The fuzzers need clang: use `cmake --preset fuzz`, or set CMAKE_CXX_COMPILER to a clang++.")
+    endif()
+    add_compile_options(-fsanitize=fuzzer-no-link)
+endif()

@@ -1,0 +1,250 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "host/apply/device_operator.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+#include "kernels/types.cl.h"
+
+namespace lcl {
+namespace {
+
+constexpr int cpu_schedule_chunk = 256;  // rows of a Gauss-Seidel step that one work-item of a CPU takes
+
+bool is_double(const Context& context, Real real) { return real == Real::full || (real == Real::wide && context.device().has_double); }
+
+/// A scalar, or a row of them, in a kernel's own type, by value.
+struct RealValue {
+    std::array<unsigned char, 4 * sizeof(double)> bytes{};
+    std::size_t size = 0;
+};
+
+RealValue real_value(bool as_double, std::initializer_list<double> values) {
+    RealValue out;
+    for (const double value : values) {
+        const float narrow = static_cast<float>(value);
+        const std::size_t bytes = as_double ? sizeof value : sizeof narrow;
+        std::memcpy(out.bytes.data() + out.size, as_double ? static_cast<const void*>(&value) : &narrow, bytes);
+        out.size += bytes;
+    }
+    return out;
+}
+
+/// The channels of one block as a vector of its width, the rest zero.
+RealValue row_value(bool as_double, const ChannelBlock& block, const ChannelValues& values) {
+    const auto at = [&](int i) { return i < block.count ? values[block.first + i] : 0.0; };
+    if (block.width == 1) return real_value(as_double, {at(0)});
+    if (block.width == 2) return real_value(as_double, {at(0), at(1)});
+    return real_value(as_double, {at(0), at(1), at(2), at(3)});
+}
+
+void set_argument(cl_kernel kernel, unsigned place, const RealValue& value) { set_argument_bytes(kernel, place, value.bytes.data(), value.size); }
+
+std::vector<lcl_run> device_runs(const Plan& plan) {
+    static_assert(LCL_SHAPE_IDENTITY == static_cast<int>(RowShape::identity) && LCL_SHAPE_RING == static_cast<int>(RowShape::ring) &&
+                  LCL_SHAPE_FULL_RING == static_cast<int>(RowShape::full_ring) && LCL_SHAPE_WEIGHTED == static_cast<int>(RowShape::weighted));
+    std::vector<lcl_run> runs;
+    runs.reserve(plan.runs.size());
+    for (const Run& run : plan.runs) runs.push_back({run.first, run.count, static_cast<int>(run.shape), run.edges, run.index_offset, 0, 0, 0});
+    return runs;
+}
+
+}  // namespace
+
+LaunchShape launch_shape(const DeviceInfo& device) {
+    if (!device.is_gpu) return {1, 8192};
+    const int group = static_cast<int>(std::min<std::size_t>(128, device.max_work_group_size));
+    return {group, 1024};
+}
+
+DeviceOperator::DeviceOperator(std::shared_ptr<Context> context, std::shared_ptr<const Plan> plan, int group)
+    : context_(std::move(context)), plan_(std::move(plan)), group_(group) {
+    static_assert(sizeof(lcl_block) == sizeof(Block));
+    const std::vector<lcl_run> runs = device_runs(*plan_);
+    const auto upload_all = [&](const auto& values, const char* what) { return upload(values.data(), values.size() * sizeof values[0], what); };
+    blocks_ = upload_all(plan_->blocks, "the blocks of a limit operator");
+    runs_ = upload_all(runs, "the runs of a limit operator");
+    indices_ = upload_all(plan_->indices, "the limit stencils' neighbours");
+    weighted_offsets_ = upload_all(plan_->weighted_offsets, "the offsets of weighted limit stencils");
+    weighted_indices_ = upload_all(plan_->weighted_indices, "the columns of weighted limit stencils");
+}
+
+Buffer DeviceOperator::upload(const void* data, std::size_t bytes, const char* what) {
+    Buffer buffer(context_, std::max<std::size_t>(bytes, 16), what);
+    if (bytes > 0) context_->write(buffer, 0, bytes, data, std::string("uploading ") + what);
+    return buffer;
+}
+
+Buffer DeviceOperator::upload_reals(const std::vector<double>& values, Real real, const char* what) {
+    if (is_double(*context_, real)) return upload(values.data(), values.size() * sizeof(double), what);
+    std::vector<float> narrow;
+    narrow.reserve(values.size() * (real == Real::wide ? 2 : 1));
+    for (const double value : values) {
+        narrow.push_back(static_cast<float>(value));
+        if (real == Real::wide) narrow.push_back(static_cast<float>(value - narrow.back()));  // the low half of a pair
+    }
+    return upload(narrow.data(), narrow.size() * sizeof(float), what);
+}
+
+const Buffer& DeviceOperator::weights(Real real, bool weighted_rows) {
+    Buffer& buffer = weights_[{real, weighted_rows}];
+    if (buffer) return buffer;
+    if (weighted_rows) return buffer = upload_reals(plan_->weighted_weights, real, "the weights of weighted limit stencils");
+    std::vector<double> values;
+    for (const Run& run : plan_->runs) values.insert(values.end(), {run.weights.vertex, run.weights.edge, run.weights.diagonal});
+    return buffer = upload_reals(values, real, "the weights of limit stencils");
+}
+
+const Buffer& DeviceOperator::vertex_order() {
+    if (!vertex_order_) vertex_order_ = upload(plan_->vertex_of_row.data(), plan_->vertex_of_row.size() * sizeof(Index), "the vertex order");
+    return vertex_order_;
+}
+
+const Buffer& DeviceOperator::scaling(Real real) {
+    Buffer& buffer = scaling_[real];
+    if (!buffer) buffer = upload_reals(plan_->scaling, real, "the scaling of a limit operator");
+    return buffer;
+}
+
+DeviceOperator::Partials& DeviceOperator::partials(const Field& field) {
+    Partials& partials = partials_[{field.real(), field.channels()}];
+    const std::size_t count = std::max<std::size_t>(1, plan_->blocks.size());
+    for (std::size_t b = partials.norms.size(); b < field.blocks().size(); ++b) {
+        partials.norms.emplace_back(context_, count * sizeof(double), "norms of blocks");
+        partials.sums.emplace_back(context_, count * field.blocks()[b].width * sizeof(double), "sums of blocks");
+    }
+    return partials;
+}
+
+cl_kernel DeviceOperator::kernel(const char* file, const char* name, const Field& field, std::size_t block) {
+    return context_->kernel(file, name, kernel_options(*context_, field.real(), field.blocks()[block].width, group_));
+}
+
+LaunchSize DeviceOperator::size(const Part& part) const { return {static_cast<std::size_t>(part.block_count) * group_, static_cast<std::size_t>(group_)}; }
+
+void DeviceOperator::limit_points(const Field& x, Field& y, const Part& part) {
+    for (std::size_t b = 0; b < x.blocks().size(); ++b)
+        launch(*context_, kernel("limit", "lcl_limit_points", x, b), size(part), part.first_block, blocks_, runs_, weights(x.real(), false), indices_, weighted_offsets_,
+               weighted_indices_, weights(x.real(), true), x.buffer(b), y.buffer(b));
+}
+
+// y = a x + (b + b_jacobi / A_ii) (m - A x) + c d
+void DeviceOperator::sweep(const Sweep& s, const Field& m, const Field& x, const Field* d, Field& y, const Part& part) {
+    const bool as_double = is_double(*context_, x.real());
+    const RealValue a = real_value(as_double, {s.a}), b = real_value(as_double, {s.b}), b_jacobi = real_value(as_double, {s.b_jacobi}), c = real_value(as_double, {s.c});
+    for (std::size_t k = 0; k < x.blocks().size(); ++k) {
+        const Buffer& norms = partials(x).norms[k];
+        if (d == nullptr)
+            launch(*context_, kernel("relax", "lcl_relax", x, k), size(part), part.first_block, blocks_, runs_, weights(x.real(), false), indices_, weighted_offsets_, weighted_indices_,
+                   weights(x.real(), true), a, b, b_jacobi, m.buffer(k), x.buffer(k), y.buffer(k), norms);
+        else
+            launch(*context_, kernel("relax", "lcl_relax_three_term", x, k), size(part), part.first_block, blocks_, runs_, weights(x.real(), false), indices_, weighted_offsets_,
+                   weighted_indices_, weights(x.real(), true), a, b, b_jacobi, c, m.buffer(k), x.buffer(k), d->buffer(k), y.buffer(k), norms);
+    }
+}
+
+void DeviceOperator::wide_residual(const Field& m, const Field& x, Field& r, const Part& part) {
+    for (std::size_t b = 0; b < x.blocks().size(); ++b)
+        launch(*context_, kernel("residual", "lcl_residual", x, b), size(part), part.first_block, blocks_, runs_, weights(x.real(), false), indices_, weighted_offsets_, weighted_indices_,
+               weights(x.real(), true), m.buffer(b), x.buffer(b), r.buffer(b), partials(r).norms[b]);
+}
+
+void DeviceOperator::correct(const Field& d, Field& x, const Part& part) {
+    for (std::size_t b = 0; b < x.blocks().size(); ++b)
+        launch(*context_, kernel("residual", "lcl_correct", x, b), {static_cast<std::size_t>(part.row_count), 0}, part.first_row, part.row_count, d.buffer(b), x.buffer(b));
+}
+
+void DeviceOperator::narrow(const Field& x, Field& y) {
+    for (std::size_t b = 0; b < x.blocks().size(); ++b)
+        launch(*context_, kernel("residual", "lcl_narrow_rows", x, b), {static_cast<std::size_t>(x.rows()), 0}, Index{0}, x.rows(), x.buffer(b), y.buffer(b));
+}
+
+DeviceOperator::ScheduleArrays& DeviceOperator::schedule_arrays(const Schedule& schedule, Real real) {
+    ScheduleArrays& arrays = schedules_[{&schedule, real}];
+    if (arrays.rows) return arrays;
+    arrays.rows = upload(schedule.rows.data(), schedule.rows.size() * sizeof(Index), "the rows of a Gauss-Seidel schedule");
+    arrays.offsets = upload(schedule.offsets.data(), schedule.offsets.size() * sizeof(std::uint32_t), "the offsets of a Gauss-Seidel schedule");
+    arrays.columns = upload(schedule.columns.data(), schedule.columns.size() * sizeof(Index), "the columns of a Gauss-Seidel schedule");
+    arrays.weights = upload_reals(schedule.weights, real, "the weights of a Gauss-Seidel schedule");
+    arrays.inverse_diagonal = upload_reals(schedule.inverse_diagonal, real, "the diagonal of a Gauss-Seidel schedule");
+    return arrays;
+}
+
+void DeviceOperator::relax_rows(const Schedule& schedule, const Field& m, Field& x) {
+    const ScheduleArrays& arrays = schedule_arrays(schedule, x.real());
+    const int chunk = group_ == 1 ? cpu_schedule_chunk : 1;
+    for (std::size_t step = 0; step + 1 < schedule.step_offsets.size(); ++step) {
+        const Index first = schedule.step_offsets[step], count = schedule.step_offsets[step + 1] - first;
+        const std::size_t items = (count + chunk - 1) / chunk, local = static_cast<std::size_t>(group_);
+        for (std::size_t b = 0; b < x.blocks().size(); ++b)
+            launch(*context_, kernel("gauss_seidel", "lcl_relax_rows", x, b), {(items + local - 1) / local * local, local}, first, count, chunk, arrays.rows, arrays.offsets, arrays.columns,
+                   arrays.weights, arrays.inverse_diagonal, m.buffer(b), x.buffer(b));
+    }
+}
+
+ResidualNorms DeviceOperator::norms(const Field& like, const Part& part) {
+    ResidualNorms worst;
+    const bool as_double = is_double(*context_, like.real());
+    const std::size_t bytes = as_double ? sizeof(double) : sizeof(float);
+    std::vector<unsigned char> raw(part.block_count * bytes);
+    for (std::size_t b = 0; b < like.blocks().size(); ++b) {
+        if (!raw.empty()) context_->read(partials(like).norms[b], part.first_block * bytes, raw.size(), raw.data(), "reading residual norms");
+        double square = 0;
+        for (Index i = 0; i < part.block_count; ++i) {
+            float narrow;
+            double value;
+            if (as_double) std::memcpy(&value, raw.data() + i * bytes, bytes);
+            else std::memcpy(&narrow, raw.data() + i * bytes, bytes), value = narrow;
+            if (!(value <= square)) square = value;  // keeps a not-a-number
+        }
+        double& norm = b == 0 ? worst.position : worst.others;
+        if (!(std::sqrt(square) <= norm)) norm = std::sqrt(square);
+    }
+    return worst;
+}
+
+ChannelValues DeviceOperator::sums(const Field& field, const Part& part) {
+    ChannelValues total(field.channels(), 0.0);
+    const bool as_double = context_->device().has_double;
+    const std::size_t bytes = as_double ? sizeof(double) : sizeof(float);
+    for (std::size_t b = 0; b < field.blocks().size(); ++b) {
+        const ChannelBlock& block = field.blocks()[b];
+        std::vector<unsigned char> raw(static_cast<std::size_t>(part.block_count) * block.width * bytes);
+        if (!raw.empty()) context_->read(partials(field).sums[b], static_cast<std::size_t>(part.first_block) * block.width * bytes, raw.size(), raw.data(), "reading sums");
+        for (Index i = 0; i < part.block_count; ++i)
+            for (int c = 0; c < block.count; ++c) {
+                float narrow;
+                double value;
+                const unsigned char* at = raw.data() + (static_cast<std::size_t>(i) * block.width + c) * bytes;
+                if (as_double) std::memcpy(&value, at, bytes);
+                else std::memcpy(&narrow, at, bytes), value = narrow;
+                total[block.first + c] += value;
+            }
+    }
+    return total;
+}
+
+ChannelValues DeviceOperator::cg_apply(const Field& p, Field& q, const Part& part) {
+    for (std::size_t b = 0; b < p.blocks().size(); ++b)
+        launch(*context_, kernel("conjugate_gradients", "lcl_cg_apply", p, b), size(part), part.first_block, blocks_, runs_, weights(p.real(), false), indices_, weighted_offsets_,
+               weighted_indices_, weights(p.real(), true), scaling(p.real()), p.buffer(b), q.buffer(b), partials(p).sums[b]);
+    return sums(p, part);
+}
+
+// x += alpha p, r -= alpha q
+ChannelValues DeviceOperator::cg_update(const ChannelValues& alpha, const Field& p, const Field& q, Field& x, Field& r, const Part& part) {
+    for (std::size_t b = 0; b < p.blocks().size(); ++b)
+        launch(*context_, kernel("conjugate_gradients", "lcl_cg_update", p, b), size(part), part.first_block, blocks_, scaling(p.real()),
+               row_value(is_double(*context_, p.real()), p.blocks()[b], alpha), p.buffer(b), q.buffer(b), x.buffer(b), r.buffer(b), partials(p).sums[b], partials(p).norms[b]);
+    return sums(p, part);
+}
+
+// p = r + beta p
+void DeviceOperator::cg_direction(const ChannelValues& beta, const Field& r, Field& p, const Part& part) {
+    for (std::size_t b = 0; b < p.blocks().size(); ++b)
+        launch(*context_, kernel("conjugate_gradients", "lcl_cg_direction", p, b), size(part), part.first_block, blocks_, row_value(is_double(*context_, p.real()), p.blocks()[b], beta),
+               r.buffer(b), p.buffer(b));
+}
+
+}  // namespace lcl

@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A on a device: the fused sweep, limit points, residuals and the sums of conjugate gradients, each on a range of blocks.
+#pragma once
+
+#include <array>
+#include <map>
+#include <memory>
+#include <vector>
+
+#include "host/apply/host_operator.h"
+#include "host/field/field.h"
+#include "host/operator/schedule.h"
+
+namespace lcl {
+
+/// How blocks are swept: CPUs take one work-item a block of many rows, GPUs a work-group a block of fewer.
+struct LaunchShape {
+    int group = 1;           ///< work-items a block, a power of two
+    Index block_rows = 8192; ///< for PlanOptions
+};
+LaunchShape launch_shape(const DeviceInfo& device);
+
+/// y = a x + (b + b_jacobi / A_ii) (m - A x) + c d.
+struct Sweep {
+    double a = 1, b = 1, b_jacobi = 0, c = 0;
+};
+
+/// One number a channel.
+using ChannelValues = std::vector<double>;
+
+/// The plan's arrays on a device. All fields have the plan's vertex_count rows; all calls but norms() and sums return at once.
+class DeviceOperator {
+public:
+    DeviceOperator(std::shared_ptr<Context> context, std::shared_ptr<const Plan> plan, int group);
+
+    const Plan& plan() const { return *plan_; }
+    const std::shared_ptr<const Plan>& shared_plan() const { return plan_; }
+    Context& context() const { return *context_; }
+    const std::shared_ptr<Context>& shared_context() const { return context_; }
+    Field make_field(int channels, Real real) const { return Field(context_, plan_->vertex_count, channels, real); }
+
+    /// Row -> caller's vertex, vertex_count integers: for transfers from and to a caller's buffers.
+    const Buffer& vertex_order();
+
+    /// y = A x. x and y differ.
+    void limit_points(const Field& x, Field& y, const Part& part);
+    /// One sweep; the norms of m - A x are had by norms(). x and y differ; d may be y, or null where c is 0.
+    void sweep(const Sweep& sweep, const Field& m, const Field& x, const Field* d, Field& y, const Part& part);
+    /// r = m - A x, m and x wide, r single; norms as above.
+    void wide_residual(const Field& m, const Field& x, Field& r, const Part& part);
+    /// x += d on the part's rows; x wide, d single.
+    void correct(const Field& d, Field& x, const Part& part);
+    /// Wide rows as floats, all rows.
+    void narrow(const Field& x, Field& y);
+    /// GS-PIA over the rows of the schedule, in place; no norms.
+    void relax_rows(const Schedule& schedule, const Field& m, Field& x);
+    /// Waits; largest row norms that the last sweep, wide_residual or cg_update of a field like `like` left for the part. Normalised units.
+    ResidualNorms norms(const Field& like, const Part& part);
+
+    /// q = A p; waits for <p, q>_D of each channel.
+    ChannelValues cg_apply(const Field& p, Field& q, const Part& part);
+    /// x += alpha p, r -= alpha q; waits for <r, r>_D; norms of r are had by norms().
+    ChannelValues cg_update(const ChannelValues& alpha, const Field& p, const Field& q, Field& x, Field& r, const Part& part);
+    /// p = r + beta p.
+    void cg_direction(const ChannelValues& beta, const Field& r, Field& p, const Part& part);
+
+private:
+    struct ScheduleArrays { Buffer rows, offsets, columns, weights, inverse_diagonal; };
+    struct Partials { std::vector<Buffer> norms, sums; };  // a channel block each
+    const Buffer& weights(Real real, bool weighted_rows);
+    const Buffer& scaling(Real real);
+    Partials& partials(const Field& field);
+    ScheduleArrays& schedule_arrays(const Schedule& schedule, Real real);
+    ChannelValues sums(const Field& field, const Part& part);
+    cl_kernel kernel(const char* file, const char* name, const Field& field, std::size_t block);
+    LaunchSize size(const Part& part) const;
+    Buffer upload(const void* data, std::size_t bytes, const char* what);
+    Buffer upload_reals(const std::vector<double>& values, Real real, const char* what);
+
+    std::shared_ptr<Context> context_;
+    std::shared_ptr<const Plan> plan_;
+    int group_;
+    Buffer blocks_, runs_, indices_, weighted_offsets_, weighted_indices_, vertex_order_;
+    std::map<std::pair<Real, bool>, Buffer> weights_;
+    std::map<Real, Buffer> scaling_;
+    std::map<std::pair<Real, int>, Partials> partials_;  // by type and channel count
+    std::map<std::pair<const Schedule*, Real>, ScheduleArrays> schedules_;
+};
+
+}  // namespace lcl

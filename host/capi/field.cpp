@@ -1,0 +1,197 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "host/capi/handles.h"
+
+using namespace lcl;
+
+namespace {
+
+bool same(const Transform& a, const Transform& b) { return a.centre == b.centre && a.scale == b.scale; }
+
+const Transform& transform_of(lcl_field field, const char* name) {
+    if (!field->transform) throw InvalidArgument(std::string("the field ") + name + " holds no values yet: upload them, or give it a centre and scale by lcl_field_match");
+    return *field->transform;
+}
+
+/// A caller's rows as doubles, n x channels without gaps.
+std::vector<double> read_rows(const void* values, lcl_type type, std::size_t stride, int channels, Index rows) {
+    std::vector<double> out(static_cast<std::size_t>(rows) * channels);
+    for (std::size_t i = 0; i < out.size(); ++i) {
+        const std::size_t place = i / channels * stride + i % channels;
+        out[i] = type == LCL_TYPE_FLOAT ? static_cast<const float*>(values)[place] : static_cast<const double*>(values)[place];
+    }
+    return out;
+}
+
+void check_type(lcl_type type, std::size_t stride, int channels) {
+    if (type != LCL_TYPE_DOUBLE && type != LCL_TYPE_FLOAT) throw InvalidArgument("type is " + std::to_string(type) + ", it is 0 (double) or 1 (float)");
+    if (stride < static_cast<std::size_t>(channels)) throw InvalidArgument("stride is " + std::to_string(stride) + ", less than the " + std::to_string(channels) + " channels");
+}
+
+/// Rows of the plan for a list of vertices, and the places of the list in ascending order of rows: neighbours in memory travel together.
+struct RowList {
+    std::vector<Index> rows;
+    std::vector<std::size_t> order;
+};
+
+RowList row_list(const Plan& plan, const int32_t* vertices, std::size_t count) {
+    RowList list;
+    for (std::size_t i = 0; i < count; ++i) {
+        if (vertices[i] < 0 || vertices[i] >= plan.vertex_count)
+            throw InvalidArgument("vertex " + std::to_string(vertices[i]) + " was asked for, the field has " + std::to_string(plan.vertex_count), {{vertices[i]}, {}});
+        list.rows.push_back(plan.row_of_vertex[vertices[i]]);
+    }
+    list.order.resize(count);
+    std::iota(list.order.begin(), list.order.end(), std::size_t{0});
+    std::stable_sort(list.order.begin(), list.order.end(), [&](std::size_t a, std::size_t b) { return list.rows[a] < list.rows[b]; });
+    return list;
+}
+
+/// body(begin, end) for each stretch of order whose rows follow each other.
+template <class Body> void for_each_stretch(const RowList& list, const Body& body) {
+    for (std::size_t begin = 0, end; begin < list.order.size(); begin = end) {
+        end = begin + 1;
+        while (end < list.order.size() && list.rows[list.order[end]] == list.rows[list.order[end - 1]] + 1) ++end;
+        body(begin, end);
+    }
+}
+
+void check_same_operator(lcl_operator A, std::initializer_list<lcl_field> fields) {
+    const lcl_field first = *fields.begin();
+    for (const lcl_field field : fields) {
+        if (field == nullptr) continue;
+        if (field->A.get() != A) throw InvalidArgument("a field of another operator was given");
+        if (field->field.channels() != first->field.channels() || field->field.real() != first->field.real()) throw InvalidArgument("the fields differ in channels or precision");
+    }
+}
+
+}  // namespace
+
+extern "C" {
+
+lcl_status lcl_field_create(lcl_operator A, int32_t channels, lcl_precision precision, lcl_field* field) {
+    return guarded([&] {
+        required(field, "field");
+        if (channels < 1) throw InvalidArgument("channels is " + std::to_string(channels) + ", it is at least 1");
+        Field values = required(A, "A")->system->A->make_field(channels, precision == LCL_PRECISION_DOUBLE ? Real::full : Real::single);
+        values.fill_zero();
+        *field = new lcl_field_s(A, std::move(values));
+        return LCL_OK;
+    });
+}
+
+void lcl_field_retain(lcl_field field) { retain(field); }
+void lcl_field_release(lcl_field field) { release(field); }
+int32_t lcl_field_channels(lcl_field field) { return field ? field->field.channels() : 0; }
+
+lcl_status lcl_field_upload(lcl_field field, const void* values, lcl_type type, size_t stride) {
+    return guarded([&] {
+        Field& inner = required(field, "field")->field;
+        if (stride == 0) stride = inner.channels();
+        check_type(type, stride, inner.channels());
+        const Plan& plan = field->A->system->plan();
+        const std::vector<double> rows = read_rows(required(values, "values"), type, stride, inner.channels(), plan.vertex_count);
+        if (!field->transform) field->transform = fit_transform(plan, rows.data(), inner.channels(), inner.channels());
+        inner.upload(to_plan_order(plan, *field->transform, rows.data(), inner.channels(), inner.channels()).data(), 0, plan.vertex_count);
+        return LCL_OK;
+    });
+}
+
+lcl_status lcl_field_download(lcl_field field, void* values, lcl_type type, size_t stride) {
+    return guarded([&] {
+        const Field& inner = required(field, "field")->field;
+        if (stride == 0) stride = inner.channels();
+        check_type(type, stride, inner.channels());
+        const Plan& plan = field->A->system->plan();
+        std::vector<double> rows(static_cast<std::size_t>(plan.vertex_count) * inner.channels());
+        inner.download(rows.data(), 0, plan.vertex_count);
+        std::vector<double> out(rows.size());
+        from_plan_order(plan, transform_of(field, "to download"), rows, inner.channels(), out.data(), inner.channels());
+        required(values, "values");
+        for (Index row = plan.isolated_count; row < plan.vertex_count; ++row)  // isolated vertices keep what the caller's memory holds
+            for (int c = 0; c < inner.channels(); ++c) {
+                const std::size_t v = plan.vertex_of_row[row], from = v * inner.channels() + c, to = v * stride + c;
+                if (type == LCL_TYPE_FLOAT) static_cast<float*>(values)[to] = static_cast<float>(out[from]);
+                else static_cast<double*>(values)[to] = out[from];
+            }
+        return LCL_OK;
+    });
+}
+
+lcl_status lcl_field_match(lcl_field field, lcl_field of) {
+    return guarded([&] {
+        if (required(field, "field")->field.channels() != required(of, "of")->field.channels()) throw InvalidArgument("the fields differ in channels");
+        field->transform = transform_of(of, "to match");
+        return LCL_OK;
+    });
+}
+
+lcl_status lcl_field_read_vertices(lcl_field field, const int32_t* vertices, size_t count, double* values) {
+    return guarded([&] {
+        const Field& inner = required(field, "field")->field;
+        const int channels = inner.channels();
+        const Transform& transform = transform_of(field, "to read");
+        const RowList list = row_list(field->A->system->plan(), count ? required(vertices, "vertices") : vertices, count);
+        for_each_stretch(list, [&](std::size_t begin, std::size_t end) {
+            std::vector<double> rows((end - begin) * channels);
+            inner.download(rows.data(), list.rows[list.order[begin]], static_cast<Index>(end - begin));
+            for (std::size_t i = 0; i < rows.size(); ++i)
+                required(values, "values")[list.order[begin + i / channels] * channels + i % channels] = rows[i] / transform.scale[i % channels] + transform.centre[i % channels];
+        });
+        return LCL_OK;
+    });
+}
+
+lcl_status lcl_field_write_vertices(lcl_field field, const int32_t* vertices, size_t count, const double* values) {
+    return guarded([&] {
+        Field& inner = required(field, "field")->field;
+        const int channels = inner.channels();
+        const Transform& transform = transform_of(field, "to write");
+        const RowList list = row_list(field->A->system->plan(), count ? required(vertices, "vertices") : vertices, count);
+        for_each_stretch(list, [&](std::size_t begin, std::size_t end) {
+            std::vector<double> rows((end - begin) * channels);
+            for (std::size_t i = 0; i < rows.size(); ++i)
+                rows[i] = (required(values, "values")[list.order[begin + i / channels] * channels + i % channels] - transform.centre[i % channels]) * transform.scale[i % channels];
+            inner.upload(rows.data(), list.rows[list.order[begin]], static_cast<Index>(end - begin));
+        });
+        return LCL_OK;
+    });
+}
+
+lcl_status lcl_operator_apply(lcl_operator A, lcl_field x, lcl_field y) {
+    return guarded([&] {
+        check_same_operator(required(A, "A"), {required(x, "x"), required(y, "y")});
+        if (x == y) throw InvalidArgument("x and y are the same field");
+        y->transform = transform_of(x, "x");
+        A->system->A->limit_points(x->field, y->field, A->system->plan().all_rows());
+        return LCL_OK;
+    });
+}
+
+lcl_status lcl_operator_step(lcl_operator A, double a, double b, double c, lcl_field M, lcl_field x, lcl_field d, lcl_field y, int32_t first_block, int32_t block_count, double* residual) {
+    return guarded([&] {
+        check_same_operator(required(A, "A"), {required(x, "x"), required(M, "M"), required(y, "y"), d});
+        if (x == y) throw InvalidArgument("x and y are the same field");
+        if (c != 0) required(d, "d");
+        const Transform& transform = transform_of(x, "x");
+        for (const lcl_field field : {M, c != 0 ? d : M})
+            if (!same(transform_of(field, field == M ? "M" : "d"), transform)) throw InvalidArgument("M, x and d differ in centre and scale: use lcl_field_match before uploading");
+        const Plan& plan = A->system->plan();
+        const Index blocks = static_cast<Index>(plan.blocks.size());
+        if (block_count < 0) block_count = blocks - first_block;
+        if (first_block < 0 || block_count < 0 || first_block > blocks - block_count)
+            throw InvalidArgument("blocks " + std::to_string(first_block) + " to " + std::to_string(first_block + block_count) + " were asked for, the operator has " + std::to_string(blocks));
+        const Part part{0, 0, first_block, block_count};
+        Transform result = transform;
+        if (a + c != 1) for (double& centre : result.centre) centre *= a + c;  // of an affine sum; 1 for PIA and its relatives, 0 for a residual
+        A->system->A->sweep({a, b, 0, c}, M->field, x->field, c != 0 ? &d->field : nullptr, y->field, part);
+        y->transform = result;
+        if (residual != nullptr) *residual = A->system->A->norms(x->field, part).position / transform.scale[0];
+        return LCL_OK;
+    });
+}
+
+}  // extern "C"

@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What the opaque handles of the C API point at.
+#pragma once
+
+#include <atomic>
+#include <future>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <optional>
+
+#include "host/capi/guard.h"
+#include "host/field/field.h"
+#include "host/io/mesh_file.h"
+#include "host/refine/refine.h"
+#include "host/solve/limit_system.h"
+
+namespace lcl {
+
+/// Base of the handles: one reference at first.
+struct Counted {
+    std::atomic<int> references{1};
+};
+template <class Handle> Handle* retain(Handle* handle) {
+    if (handle != nullptr) handle->references.fetch_add(1, std::memory_order_relaxed);
+    return handle;
+}
+template <class Handle> void release(Handle* handle) {
+    if (handle != nullptr && handle->references.fetch_sub(1, std::memory_order_acq_rel) == 1) delete handle;
+}
+
+/// A reference that drops itself.
+template <class Handle> struct Releaser {
+    void operator()(Handle* handle) const { release(handle); }
+};
+template <class Handle> using Reference = std::unique_ptr<Handle, Releaser<Handle>>;
+template <class Handle> Reference<Handle> share(Handle* handle) { return Reference<Handle>(retain(handle)); }
+
+}  // namespace lcl
+
+struct lcl_context_s : lcl::Counted {
+    std::shared_ptr<lcl::Context> context;
+    lcl_log_callback log = nullptr;
+    void* log_user = nullptr;
+    int32_t log_level = LCL_LOG_ERROR;
+
+    void write_log(int32_t level, const std::string& message) const {
+        if (log != nullptr && level <= log_level) log(log_user, level, message.c_str());
+    }
+};
+
+struct lcl_mesh_s : lcl::Counted {
+    lcl::MeshFile file;
+    lcl::FeatureOptions feature_options;           // the file's tags and what callers added; boundary resolved by boundary_rule()
+    lcl_boundary boundary = LCL_BOUNDARY_DEFAULT;
+    std::vector<lcl::SurfaceLocation> locations;   // of a refined mesh
+    std::map<lcl_note, std::vector<std::string>> notes;
+
+    /// Topology and features of a sound mesh, built once; BadInput with the reason if it is not sound.
+    const lcl::Topology& topology();
+    const lcl::Features& features();
+    const std::vector<lcl::Defect>& defects();
+    lcl::BoundaryRule boundary_rule() const;
+    void forget_features();
+
+private:
+    void refuse_tags();
+    std::mutex mutex_;  // several threads may read one mesh
+    std::optional<lcl::Topology> topology_;
+    std::optional<lcl::Features> features_;
+    std::optional<std::vector<lcl::Defect>> defects_;
+};
+
+struct lcl_operator_s : lcl::Counted {
+    lcl::Reference<lcl_context_s> context;
+    std::unique_ptr<lcl::LimitSystem> system;
+};
+
+struct lcl_field_s : lcl::Counted {
+    lcl::Reference<lcl_operator_s> A;
+    lcl::Field field;
+    std::optional<lcl::Transform> transform;  // set by the first upload
+
+    lcl_field_s(lcl_operator_s* owner, lcl::Field values) : A(lcl::share(owner)), field(std::move(values)) {}
+};
+
+struct lcl_task_s : lcl::Counted {
+    struct Result {
+        lcl_status status;
+        lcl::LastError error;
+    };
+    lcl::Reference<lcl_operator_s> A;
+    std::shared_future<Result> result;
+
+    ~lcl_task_s() {
+        if (result.valid()) result.wait();
+    }
+};
+
+namespace lcl {
+
+/// Scheme of the options, resolved for a mesh, with ranges checked.
+SchemeOptions scheme_options(lcl_mesh_s& mesh, const lcl_scheme_options& options);
+
+/// Marks of a list of vertices; empty for a null list. InvalidArgument for a vertex that is not there.
+std::vector<std::uint8_t> vertex_marks(const int32_t* vertices, std::size_t count, Index vertex_count, const char* name);
+
+}  // namespace lcl

@@ -1,0 +1,409 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "host/capi/handles.h"
+
+using namespace lcl;
+
+const Topology& lcl_mesh_s::topology() {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    if (topology_) return *topology_;
+    Topology built = build_topology(file.mesh);
+    refuse_tags();
+    const bool has_boundary = std::count(built.twin.begin(), built.twin.end(), -1) > 0;
+    if (file.tags.interpolate_boundary == 0 && boundary == LCL_BOUNDARY_DEFAULT && has_boundary)
+        throw BadInput("the file asks for `t interpolateboundary 0` (no surface along the boundary) on a mesh with a boundary, which is not offered: choose a boundary rule");
+    topology_ = std::move(built);
+    return *topology_;
+}
+
+void lcl_mesh_s::refuse_tags() {
+    if (!file.tags.refused.empty()) throw BadInput(file.tags.refused);
+}
+
+const Features& lcl_mesh_s::features() {
+    const Topology& sound = topology();
+    const std::lock_guard<std::mutex> lock(mutex_);
+    if (features_) return *features_;
+    FeatureOptions options = feature_options;
+    options.boundary = boundary_rule();
+    features_ = find_features(file.mesh, sound, options);
+    return *features_;
+}
+
+const std::vector<Defect>& lcl_mesh_s::defects() {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    if (!defects_) defects_ = find_defects(file.mesh);
+    return *defects_;
+}
+
+BoundaryRule lcl_mesh_s::boundary_rule() const {
+    switch (boundary) {
+        case LCL_BOUNDARY_EDGE_ONLY: return BoundaryRule::edge_only;
+        case LCL_BOUNDARY_FIXED: return BoundaryRule::fixed;
+        case LCL_BOUNDARY_EDGE_AND_CORNER: return BoundaryRule::edge_and_corner;
+        case LCL_BOUNDARY_DEFAULT: break;
+    }
+    return file.tags.interpolate_boundary == 2 ? BoundaryRule::edge_only : BoundaryRule::edge_and_corner;
+}
+
+void lcl_mesh_s::forget_features() {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    topology_.reset();
+    features_.reset();
+}
+
+namespace {
+
+lcl_mesh adopt(MeshFile file) {
+    auto mesh = std::make_unique<lcl_mesh_s>();
+    mesh->feature_options.creases = file.tags.creases;
+    mesh->feature_options.corners = file.tags.corners;
+    mesh->notes[LCL_NOTE_WARNING] = file.warnings;
+    mesh->notes[LCL_NOTE_IGNORED_TAG] = file.tags.ignored;
+    for (const auto& [name, count] : file.unknown_statements) mesh->notes[LCL_NOTE_UNKNOWN_STATEMENT].push_back(name + " " + std::to_string(count));
+    if (!file.tags.refused.empty()) mesh->notes[LCL_NOTE_REFUSED_TAG] = {file.tags.refused};
+    mesh->file = std::move(file);
+    return mesh.release();
+}
+
+FileFormat inner_format(lcl_format format) {
+    if (format < LCL_FORMAT_BY_ENDING || format > LCL_FORMAT_OM) throw InvalidArgument("format is " + std::to_string(format) + ", it goes from 0 to 5");
+    return static_cast<FileFormat>(format);
+}
+
+/// Edge ends of all creases off the boundary.
+std::vector<std::array<Index, 2>> crease_edges(const Topology& topology, const Features& features) {
+    std::vector<std::array<Index, 2>> edges;
+    for (Index e = 0; e < topology.edge_count; ++e)
+        if (features.edge_is_sharp[e] && !topology.is_boundary_edge(e)) edges.push_back({topology.origin(topology.edge_half_edge[e]), topology.destination(topology.edge_half_edge[e])});
+    return edges;
+}
+
+/// The tags that make a reader find the same features: creases however they were found, marked corners, the boundary rule where it is not the default.
+void set_output_tags(lcl_mesh_s& mesh) {
+    const Topology& topology = mesh.topology();
+    const Features& features = mesh.features();
+    MeshTags& tags = mesh.file.tags;
+    tags.creases = crease_edges(topology, features);
+    tags.corners = mesh.feature_options.corners;
+    if (mesh.boundary_rule() == BoundaryRule::fixed)
+        for (Index v = 0; v < topology.vertex_count; ++v)
+            if (topology.is_boundary(v)) tags.corners.push_back(v);
+    std::sort(tags.corners.begin(), tags.corners.end());
+    tags.corners.erase(std::unique(tags.corners.begin(), tags.corners.end()), tags.corners.end());
+    tags.interpolate_boundary = mesh.boundary_rule() == BoundaryRule::edge_only ? 2 : -1;
+}
+
+template <class T> double value_at(const void* points, std::size_t place) { return static_cast<double>(static_cast<const T*>(points)[place]); }
+
+void copy_points(const lcl_mesh_data& data, std::vector<double>& positions) {
+    const std::size_t stride = data.point_stride == 0 ? 3 : data.point_stride;
+    if (stride < 3) throw InvalidArgument("data.point_stride is " + std::to_string(stride) + ", a point has 3 values");
+    const auto read = data.point_type == LCL_TYPE_FLOAT ? &value_at<float> : &value_at<double>;
+    positions.resize(static_cast<std::size_t>(data.vertex_count) * 3);
+    for (std::size_t i = 0; i < positions.size(); ++i) positions[i] = read(data.points, i / 3 * stride + i % 3);
+}
+
+void copy_faces(const lcl_mesh_data& data, PolygonMesh& mesh) {
+    std::int64_t corners = 0;
+    for (int32_t f = 0; f < data.face_count; ++f) {
+        const int32_t degree = data.face_degrees ? data.face_degrees[f] : data.uniform_degree;
+        if (degree < 0) throw InvalidArgument("face " + std::to_string(f) + " has " + std::to_string(degree) + " sides");
+        corners += degree;
+        if (corners > INT32_MAX) throw OutOfMemory("the faces have more than 2147483647 corners: split the mesh");
+        mesh.face_offsets.push_back(static_cast<Index>(corners));
+    }
+    if (corners > 0) mesh.face_vertices.assign(required(data.face_vertices, "data.face_vertices"), data.face_vertices + corners);
+}
+
+const std::string* note_at(lcl_mesh mesh, lcl_note kind, int32_t index) {
+    if (mesh == nullptr) return nullptr;
+    const auto found = mesh->notes.find(kind);
+    if (found == mesh->notes.end() || index < 0 || index >= static_cast<int32_t>(found->second.size())) return nullptr;
+    return &found->second[index];
+}
+
+VertexProperty* property_at(lcl_mesh mesh, int32_t index) {
+    return mesh && index >= 0 && index < static_cast<int32_t>(mesh->file.properties.size()) ? &mesh->file.properties[index] : nullptr;
+}
+
+std::map<Index, Index> histogram(lcl_mesh_s& mesh, lcl_histogram which) {
+    std::map<Index, Index> counts;
+    if (which == LCL_HISTOGRAM_FACE_DEGREES) {
+        for (Index f = 0; f < mesh.file.mesh.face_count(); ++f) ++counts[mesh.file.mesh.degree(f)];
+        return counts;
+    }
+    const Topology& topology = mesh.topology();
+    for (Index v = 0; v < topology.vertex_count; ++v)
+        if (!topology.is_isolated(v)) ++counts[topology.valence(v)];
+    return counts;
+}
+
+lcl_mesh_info sound_info(lcl_mesh_s& mesh, lcl_mesh_info info) {
+    const Topology& topology = mesh.topology();
+    const Features& features = mesh.features();
+    info.edges = topology.edge_count;
+    info.boundary_edges = 0;
+    for (Index e = 0; e < topology.edge_count; ++e) info.boundary_edges += topology.is_boundary_edge(e);
+    info.boundary_loops = static_cast<int32_t>(boundary_loops(topology).size());
+    connected_components(topology, info.components);
+    info.creases = features.crease_count;
+    info.corners = features.corner_count;
+    return info;
+}
+
+}  // namespace
+
+extern "C" {
+
+lcl_status lcl_mesh_create(const lcl_mesh_data* data, lcl_mesh* mesh) {
+    return guarded([&] {
+        required(mesh, "mesh");
+        const lcl_mesh_data given = options_or(required(data, "data"), LCL_MESH_DATA_INIT, "data");
+        if (given.vertex_count < 0 || given.face_count < 0) throw InvalidArgument("data has a negative vertex or face count");
+        if (given.vertex_count > 0) required(given.points, "data.points");
+        MeshFile file;
+        file.mesh.vertex_count = given.vertex_count;
+        copy_points(given, file.mesh.positions);
+        copy_faces(given, file.mesh);
+        *mesh = adopt(std::move(file));
+        return LCL_OK;
+    });
+}
+
+lcl_status lcl_mesh_read(const char* path, lcl_format format, lcl_mesh* mesh) {
+    return guarded([&] {
+        required(mesh, "mesh");
+        *mesh = adopt(read_mesh(required(path, "path"), inner_format(format)));
+        return LCL_OK;
+    });
+}
+
+lcl_status lcl_mesh_read_memory(const void* bytes, size_t size, lcl_format format, const char* name, lcl_mesh* mesh) {
+    return guarded([&] {
+        required(mesh, "mesh");
+        if (size > 0) required(bytes, "bytes");
+        *mesh = adopt(read_mesh_memory(static_cast<const char*>(bytes), size, inner_format(format), name ? name : "memory"));
+        return LCL_OK;
+    });
+}
+
+lcl_status lcl_mesh_write(lcl_mesh mesh, const char* path, lcl_format format) {
+    return guarded([&] {
+        required(mesh, "mesh");
+        set_output_tags(*mesh);
+        std::vector<std::string>& warnings = mesh->notes[LCL_NOTE_WARNING];
+        write_mesh(required(path, "path"), mesh->file, inner_format(format), warnings);
+        return LCL_OK;
+    });
+}
+
+lcl_status lcl_format_of_path(const char* path, lcl_format* format) {
+    return guarded([&] {
+        bool gzip = false;
+        *required(format, "format") = static_cast<lcl_format>(format_of_path(required(path, "path"), gzip));
+        return LCL_OK;
+    });
+}
+
+lcl_status lcl_mesh_copy(lcl_mesh mesh, lcl_mesh* copy) {
+    return guarded([&] {
+        required(copy, "copy");
+        auto out = std::make_unique<lcl_mesh_s>();
+        out->file = required(mesh, "mesh")->file;
+        out->feature_options = mesh->feature_options;
+        out->boundary = mesh->boundary;
+        out->locations = mesh->locations;
+        out->notes = mesh->notes;
+        if (out->feature_options.crease_angle_degrees > 0) {  // found on these points, not on those that the copy may get
+            out->feature_options.creases = crease_edges(mesh->topology(), mesh->features());
+            out->feature_options.crease_angle_degrees = -1;
+        }
+        *copy = out.release();
+        return LCL_OK;
+    });
+}
+
+void lcl_mesh_retain(lcl_mesh mesh) { retain(mesh); }
+void lcl_mesh_release(lcl_mesh mesh) { release(mesh); }
+
+int32_t lcl_mesh_vertex_count(lcl_mesh mesh) { return mesh ? mesh->file.mesh.vertex_count : 0; }
+int32_t lcl_mesh_face_count(lcl_mesh mesh) { return mesh ? mesh->file.mesh.face_count() : 0; }
+int32_t lcl_mesh_corner_count(lcl_mesh mesh) { return mesh ? mesh->file.mesh.corner_count() : 0; }
+
+lcl_status lcl_mesh_get_faces(lcl_mesh mesh, int32_t* face_degrees, int32_t* face_vertices) {
+    return guarded([&] {
+        const PolygonMesh& polygons = required(mesh, "mesh")->file.mesh;
+        for (Index f = 0; face_degrees != nullptr && f < polygons.face_count(); ++f) face_degrees[f] = polygons.degree(f);
+        if (face_vertices != nullptr) std::copy(polygons.face_vertices.begin(), polygons.face_vertices.end(), face_vertices);
+        return LCL_OK;
+    });
+}
+
+lcl_status lcl_mesh_get_points(lcl_mesh mesh, double* points, size_t stride) {
+    return guarded([&] {
+        const PolygonMesh& polygons = required(mesh, "mesh")->file.mesh;
+        const std::size_t step = stride == 0 ? 3 : stride;
+        for (Index v = 0; v < polygons.vertex_count; ++v) std::copy_n(&polygons.positions[3 * static_cast<std::size_t>(v)], 3, required(points, "points") + v * step);
+        return LCL_OK;
+    });
+}
+
+lcl_status lcl_mesh_set_points(lcl_mesh mesh, const double* points, size_t stride) {
+    return guarded([&] {
+        if (required(mesh, "mesh")->feature_options.crease_angle_degrees > 0) mesh->features();  // found on the points as they were
+        PolygonMesh& polygons = mesh->file.mesh;
+        const std::size_t step = stride == 0 ? 3 : stride;
+        for (Index v = 0; v < polygons.vertex_count; ++v) std::copy_n(required(points, "points") + v * step, 3, &polygons.positions[3 * static_cast<std::size_t>(v)]);
+        mesh->file.normals.clear();
+        return LCL_OK;
+    });
+}
+
+lcl_status lcl_mesh_set_normals(lcl_mesh mesh, const double* normals) {
+    return guarded([&] {
+        std::vector<double>& own = required(mesh, "mesh")->file.normals;
+        if (normals == nullptr) own.clear();
+        else own.assign(normals, normals + 3 * static_cast<std::size_t>(mesh->file.mesh.vertex_count));
+        return LCL_OK;
+    });
+}
+
+lcl_status lcl_mesh_add_features(lcl_mesh mesh, const lcl_features* features) {
+    return guarded([&] {
+        required(mesh, "mesh");
+        const lcl_features given = options_or(required(features, "features"), LCL_FEATURES_INIT, "features");
+        if (given.boundary < LCL_BOUNDARY_DEFAULT || given.boundary > LCL_BOUNDARY_FIXED) throw InvalidArgument("features.boundary is " + std::to_string(given.boundary) + ", it goes from 0 to 3");
+        if (std::isnan(given.crease_angle_degrees) || given.crease_angle_degrees > 180) throw InvalidArgument("features.crease_angle_degrees goes from 0 to 180");
+        FeatureOptions& own = mesh->feature_options;
+        for (std::size_t i = 0; i < given.crease_count; ++i) own.creases.push_back({required(given.creases, "features.creases")[2 * i], given.creases[2 * i + 1]});
+        for (std::size_t i = 0; i < given.corner_count; ++i) own.corners.push_back(required(given.corners, "features.corners")[i]);
+        if (given.crease_angle_degrees > 0) own.crease_angle_degrees = given.crease_angle_degrees;
+        if (given.boundary != LCL_BOUNDARY_DEFAULT) mesh->boundary = given.boundary;
+        mesh->forget_features();
+        return LCL_OK;
+    });
+}
+
+lcl_status lcl_mesh_get_features(lcl_mesh mesh, lcl_boundary* boundary, int32_t* creases, size_t* crease_count, int32_t* corners, size_t* corner_count) {
+    return guarded([&] {
+        const Topology& topology = required(mesh, "mesh")->topology();
+        const Features& features = mesh->features();
+        if (boundary != nullptr) *boundary = static_cast<lcl_boundary>(static_cast<int>(mesh->boundary_rule()) + 1);
+        if (crease_count != nullptr) *crease_count = features.crease_count;
+        if (corner_count != nullptr) *corner_count = features.corner_count;
+        if (creases != nullptr)
+            for (const auto& edge : crease_edges(topology, features)) creases = std::copy(edge.begin(), edge.end(), creases);
+        for (Index v = 0; corners != nullptr && v < topology.vertex_count; ++v)
+            if (features.kind[v] == VertexKind::corner) *corners++ = v;
+        return LCL_OK;
+    });
+}
+
+lcl_status lcl_mesh_get_info(lcl_mesh mesh, lcl_mesh_info* info) {
+    return guarded([&] {
+        const PolygonMesh& polygons = required(mesh, "mesh")->file.mesh;
+        lcl_mesh_info out = LCL_MESH_INFO_INIT;
+        out.vertices = polygons.vertex_count;
+        out.faces = polygons.face_count();
+        out.edges = out.boundary_edges = out.boundary_loops = out.components = out.creases = out.corners = -1;
+        std::vector<std::uint8_t> used(polygons.vertex_count, 0);
+        for (const Index v : polygons.face_vertices)
+            if (v >= 0 && v < polygons.vertex_count) used[v] = 1;
+        out.isolated_vertices = polygons.vertex_count - std::accumulate(used.begin(), used.end(), Index{0});
+        out.diagonal = bounding_box_diagonal(polygons);
+        try {
+            out = sound_info(*mesh, out);
+        } catch (const BadInput&) {  // counts of a mesh that is not sound: lcl_mesh_validate says why
+        }
+        give(info, out, "info");
+        return LCL_OK;
+    });
+}
+
+lcl_status lcl_mesh_get_histogram(lcl_mesh mesh, lcl_histogram which, int32_t* keys, int32_t* counts, size_t capacity, size_t* size) {
+    return guarded([&] {
+        const std::map<Index, Index> all = histogram(*required(mesh, "mesh"), which);
+        if (size != nullptr) *size = all.size();
+        std::size_t place = 0;
+        for (const auto& [key, count] : all) {
+            if (place == capacity) break;
+            if (keys != nullptr) keys[place] = key;
+            if (counts != nullptr) counts[place] = count;
+            ++place;
+        }
+        return LCL_OK;
+    });
+}
+
+lcl_status lcl_mesh_validate(lcl_mesh mesh) {
+    return guarded([&] { required(mesh, "mesh")->features(); return LCL_OK; });
+}
+
+int32_t lcl_mesh_defect_count(lcl_mesh mesh) {
+    int32_t count = 0;
+    guarded([&] { count = static_cast<int32_t>(required(mesh, "mesh")->defects().size()); return LCL_OK; });
+    return count;
+}
+
+lcl_status lcl_mesh_get_defect(lcl_mesh mesh, int32_t index, lcl_defect* defect) {
+    return guarded([&] {
+        const std::vector<Defect>& all = required(mesh, "mesh")->defects();
+        if (index < 0 || index >= static_cast<int32_t>(all.size())) throw InvalidArgument("defect " + std::to_string(index) + " of " + std::to_string(all.size()) + " was asked for");
+        lcl_defect out = LCL_DEFECT_INIT;
+        out.kind = defect_name(all[index].kind);
+        out.message = all[index].message.c_str();
+        out.count = all[index].count;
+        out.vertex_count = copy_first(out.vertices, all[index].where.vertices);
+        out.face_count = copy_first(out.faces, all[index].where.faces);
+        give(defect, out, "defect");
+        return LCL_OK;
+    });
+}
+
+int32_t lcl_mesh_property_count(lcl_mesh mesh) { return mesh ? static_cast<int32_t>(mesh->file.properties.size()) : 0; }
+
+const char* lcl_mesh_property_name(lcl_mesh mesh, int32_t index) {
+    const VertexProperty* property = property_at(mesh, index);
+    return property ? property->name.c_str() : nullptr;
+}
+
+int32_t lcl_mesh_property_is_colour(lcl_mesh mesh, int32_t index) {
+    const VertexProperty* property = property_at(mesh, index);
+    return property != nullptr && property->kind == VertexProperty::Kind::colour;
+}
+
+lcl_status lcl_mesh_get_property(lcl_mesh mesh, int32_t index, double* values) {
+    return guarded([&] {
+        const VertexProperty* property = property_at(required(mesh, "mesh"), index);
+        if (property == nullptr) throw InvalidArgument("property " + std::to_string(index) + " was asked for, the mesh has " + std::to_string(mesh->file.properties.size()));
+        if (!property->values.empty()) std::copy(property->values.begin(), property->values.end(), required(values, "values"));
+        return LCL_OK;
+    });
+}
+
+lcl_status lcl_mesh_set_property(lcl_mesh mesh, const char* name, const double* values) {
+    return guarded([&] {
+        std::vector<VertexProperty>& properties = required(mesh, "mesh")->file.properties;
+        const std::string wanted = required(name, "name");
+        auto found = std::find_if(properties.begin(), properties.end(), [&](const VertexProperty& p) { return p.name == wanted; });
+        if (found == properties.end()) found = properties.insert(properties.end(), {wanted, VertexProperty::Kind::scalar, "double", {}});
+        found->values.assign(required(values, "values"), values + mesh->file.mesh.vertex_count);
+        return LCL_OK;
+    });
+}
+
+int32_t lcl_mesh_note_count(lcl_mesh mesh, lcl_note kind) {
+    const auto found = mesh ? mesh->notes.find(kind) : decltype(mesh->notes.find(kind)){};
+    return mesh && found != mesh->notes.end() ? static_cast<int32_t>(found->second.size()) : 0;
+}
+
+const char* lcl_mesh_note(lcl_mesh mesh, lcl_note kind, int32_t index) {
+    const std::string* note = note_at(mesh, kind, index);
+    return note ? note->c_str() : nullptr;
+}
+
+}  // extern "C"

@@ -1,0 +1,174 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "host/solve/solve.h"
+
+#include "host/capi/handles.h"
+
+using namespace lcl;
+
+namespace {
+
+Precision inner_precision(lcl_precision precision) {
+    if (precision < LCL_PRECISION_MIXED || precision > LCL_PRECISION_DOUBLE) throw InvalidArgument("precision is " + std::to_string(precision) + ", it goes from 0 to 2");
+    return static_cast<Precision>(precision);
+}
+
+void check_channels(int32_t channels, std::size_t stride, const char* name) {
+    if (channels < 1) throw InvalidArgument("channels is " + std::to_string(channels) + ", it is at least 1");
+    if (stride < static_cast<std::size_t>(channels)) throw InvalidArgument(std::string(name) + " is " + std::to_string(stride) + ", less than the " + std::to_string(channels) + " channels");
+}
+
+SolveOptions inner_options(const lcl_solve_options& given) {
+    if (given.solver < LCL_SOLVER_AUTO || given.solver > LCL_SOLVER_CG) throw InvalidArgument("options.solver is " + std::to_string(given.solver) + ", it goes from 0 to 7");
+    if (!(given.tolerance >= 0)) throw InvalidArgument("options.tolerance is " + std::to_string(given.tolerance) + ", it is above 0");
+    if (given.max_iterations < 0 || given.exact_sweeps < 0) throw InvalidArgument("options has a negative number of iterations");
+    if (!(given.weight >= 0 && given.weight < 2)) throw InvalidArgument("options.weight is " + std::to_string(given.weight) + ", W-PIA takes weights above 0 and below 2");
+    if (!(given.diagonal >= 0)) throw InvalidArgument("options.diagonal is below 0");
+    SolveOptions options;
+    options.solver = static_cast<Solver>(given.solver);
+    options.precision = inner_precision(given.precision);
+    if (given.tolerance > 0) options.tolerance = given.tolerance;
+    if (given.max_iterations > 0) options.max_iterations = given.max_iterations;
+    options.exact_sweeps = given.exact_sweeps;
+    options.weight = given.weight;
+    options.keep_going = given.keep_going != 0;
+    options.certify = given.certify != 0;
+    options.diagonal = given.diagonal;
+    if (given.progress != nullptr)
+        options.progress = [given](int iteration, double residual, double target) { return given.progress(given.progress_user, iteration, residual, target) != 0; };
+    return options;
+}
+
+void fill(lcl_solve_report* report, const SolveReport& inner) {
+    if (report == nullptr) return;
+    lcl_solve_report out = *report;
+    out.solver = static_cast<lcl_solver>(inner.solver);
+    out.converged = inner.status == SolveStatus::converged;
+    out.iterations = inner.iterations;
+    out.residual_count = inner.residuals.size();
+    if (report->residuals != nullptr) std::copy_n(inner.residuals.begin(), std::min(report->residual_capacity, inner.residuals.size()), report->residuals);
+    out.lambda_min = inner.lambda_min;
+    out.max_error = inner.max_error;
+    out.surface_error_bound = inner.surface_error_bound;
+    out.channel_error = inner.channel_error;
+    out.seconds_upload = inner.seconds_upload;
+    out.seconds_solve = inner.seconds_solve;
+    out.seconds_download = inner.seconds_download;
+    out.vertex_count = copy_first(out.vertices, inner.vertices);
+    copy_text(out.message, inner.message);
+    give(report, out, "report");
+}
+
+lcl_status conclude(const SolveReport& inner, const lcl_solve_options& options, lcl_solve_report* report) {
+    fill(report, inner);
+    if (inner.status == SolveStatus::converged || (inner.status == SolveStatus::not_converged && options.exact_sweeps > 0)) return LCL_OK;
+    last_error() = {inner.message, {inner.vertices, {}}};
+    switch (inner.status) {
+        case SolveStatus::singular: return LCL_ERROR_SINGULAR;
+        case SolveStatus::indefinite: return LCL_ERROR_INDEFINITE;
+        default: return LCL_ERROR_NOT_CONVERGED;
+    }
+}
+
+lcl_status interpolate(lcl_operator A, const double* M, std::size_t stride, int32_t channels, const lcl_solve_options& given, double* P, std::size_t P_stride, lcl_solve_report* report) {
+    LimitSystem& system = *required(A, "A")->system;
+    if (stride == 0) stride = channels;
+    if (P_stride == 0) P_stride = channels;
+    check_channels(channels, stride, "stride");
+    check_channels(channels, P_stride, "P_stride");
+    return conclude(solve_host(system, required(M, "M"), stride, channels, inner_options(given), given.warm_start != 0, required(P, "P"), P_stride), given, report);
+}
+
+}  // namespace
+
+extern "C" {
+
+lcl_status lcl_limit_points(lcl_operator A, const double* points, size_t stride, int32_t channels, lcl_precision precision, double* out, size_t out_stride) {
+    return guarded([&] {
+        LimitSystem& system = *required(A, "A")->system;
+        if (stride == 0) stride = channels;
+        if (out_stride == 0) out_stride = channels;
+        check_channels(channels, stride, "stride");
+        check_channels(channels, out_stride, "out_stride");
+        required(out, "out");
+        const Plan& plan = system.plan();
+        const Transform transform = fit_transform(plan, required(points, "points"), stride, channels);
+        const Precision inner = inner_precision(precision);
+        const Real real = inner == Precision::mixed ? Real::wide : inner == Precision::single ? Real::single : Real::full;
+        std::vector<double> values = to_plan_order(plan, transform, points, stride, channels);
+        Field x = system.A->make_field(channels, real), y = system.A->make_field(channels, real);
+        x.upload(values.data(), 0, plan.vertex_count);
+        y.copy_from(x);  // ghosts
+        system.A->limit_points(x, y, plan.all_rows());
+        y.download(values.data(), 0, plan.vertex_count);
+        std::vector<double> kept;  // fixed rows come back to the bit, also where out is points
+        for (Index row = 0; row < plan.fixed.end_row(); ++row) kept.insert(kept.end(), points + plan.vertex_of_row[row] * stride, points + plan.vertex_of_row[row] * stride + channels);
+        from_plan_order(plan, transform, values, channels, out, out_stride);
+        for (Index row = 0; row < plan.fixed.end_row(); ++row) std::copy_n(&kept[static_cast<std::size_t>(row) * channels], channels, out + plan.vertex_of_row[row] * out_stride);
+        return LCL_OK;
+    });
+}
+
+lcl_status lcl_interpolate(lcl_operator A, const double* M, size_t stride, int32_t channels, const lcl_solve_options* options, double* P, size_t P_stride, lcl_solve_report* report) {
+    return guarded([&] { return interpolate(A, M, stride, channels, options_or(options, LCL_SOLVE_OPTIONS_INIT, "options"), P, P_stride, report); });
+}
+
+lcl_status lcl_interpolate_mesh(lcl_operator A, lcl_mesh mesh, const lcl_solve_options* options, lcl_solve_report* report) {
+    return guarded([&] {
+        const Index expected = required(A, "A")->system->plan().vertex_count, found = required(mesh, "mesh")->file.mesh.vertex_count;
+        if (expected != found) throw InvalidArgument("the operator has " + std::to_string(expected) + " vertices, the mesh " + std::to_string(found));
+        lcl_solve_options given = options_or(options, LCL_SOLVE_OPTIONS_INIT, "options");
+        given.warm_start = 0;
+        std::vector<double> points = mesh->file.mesh.positions;
+        const lcl_status status = interpolate(A, mesh->file.mesh.positions.data(), 3, 3, given, points.data(), 3, report);
+        const lcl_status set = lcl_mesh_set_points(mesh, points.data(), 3);
+        return set == LCL_OK ? status : set;
+    });
+}
+
+lcl_status lcl_interpolate_async(lcl_operator A, const double* M, size_t stride, int32_t channels, const lcl_solve_options* options, double* P, size_t P_stride, lcl_solve_report* report,
+                                 lcl_task* task) {
+    return guarded([&] {
+        required(task, "task");
+        const lcl_solve_options given = options_or(options, LCL_SOLVE_OPTIONS_INIT, "options");
+        auto handle = std::make_unique<lcl_task_s>();
+        handle->A = share(required(A, "A"));
+        handle->result = std::async(std::launch::async, [=] {
+            last_error() = {};
+            const lcl_status status = guarded([&] { return interpolate(A, M, stride, channels, given, P, P_stride, report); });
+            return lcl_task_s::Result{status, last_error()};
+        }).share();
+        *task = handle.release();
+        return LCL_OK;
+    });
+}
+
+lcl_status lcl_task_wait(lcl_task task) {
+    return guarded([&] {
+        const lcl_task_s::Result& result = required(task, "task")->result.get();
+        if (result.status != LCL_OK) last_error() = result.error;
+        return result.status;
+    });
+}
+
+int32_t lcl_task_is_done(lcl_task task) { return task == nullptr || task->result.wait_for(std::chrono::seconds(0)) == std::future_status::ready; }
+void lcl_task_release(lcl_task task) { release(task); }
+
+lcl_status lcl_interpolate_field(lcl_operator A, lcl_field M, const lcl_solve_options* options, lcl_field P, lcl_solve_report* report) {
+    return guarded([&] {
+        LimitSystem& system = *required(A, "A")->system;
+        if (required(M, "M")->A.get() != A || required(P, "P")->A.get() != A) throw InvalidArgument("M and P are fields of another operator");
+        if (M == P) throw InvalidArgument("M and P are the same field");
+        if (!M->transform) throw InvalidArgument("the field M holds no values yet: upload them first");
+        if (P->field.channels() != M->field.channels() || P->field.real() != M->field.real()) throw InvalidArgument("M and P differ in channels or precision");
+        const lcl_solve_options given = options_or(options, LCL_SOLVE_OPTIONS_INIT, "options");
+        SolveOptions inner = inner_options(given);
+        if (M->field.real() == Real::full) inner.precision = Precision::full;
+        else if (inner.precision == Precision::full) throw InvalidArgument("the fields hold floats, and double precision was asked for: create them with LCL_PRECISION_DOUBLE");
+        if (given.warm_start == 0) P->transform = M->transform;
+        else if (!P->transform || P->transform->centre != M->transform->centre || P->transform->scale != M->transform->scale)
+            throw InvalidArgument("P, the start, is kept in another centre and scale than M: use lcl_field_match before uploading it");
+        return conclude(solve_fields(system, M->field, *M->transform, inner, given.warm_start != 0, P->field), given, report);
+    });
+}
+
+}  // extern "C"

@@ -1,0 +1,167 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "host/cli/channels.h"
+#include "host/cli/commands.h"
+#include "host/cli/failure.h"
+#include "host/cli/interrupt.h"
+#include "host/cli/scheme_choice.h"
+
+namespace lcl::cli {
+
+namespace {
+
+constexpr double nearly_singular = 0.05;  // the estimate of lambda_min from which `--alpha auto` would take 0.5
+
+constexpr int most_residuals = 1 << 22;  // a longer history is cut: 32 MiB, whatever --max-iter says
+
+/// What the progress line needs between two calls.
+struct SolveProgress {
+    Progress* progress;
+    int sweeps;         ///< asked for, 0: until the tolerance
+    double first = 0.0; ///< residual of the first call
+};
+
+double fraction_done(SolveProgress& state, std::int32_t iteration, double residual, double target) {
+    if (state.sweeps > 0) return static_cast<double>(iteration) / state.sweeps;
+    if (state.first <= 0.0) state.first = residual;
+    if (!(residual > 0.0) || !(target > 0.0) || state.first <= target) return -1.0;
+    return std::clamp(std::log(state.first / residual) / std::log(state.first / target), 0.0, 1.0);
+}
+
+std::int32_t on_progress(void* user, std::int32_t iteration, double residual, double target) {
+    SolveProgress& state = *static_cast<SolveProgress*>(user);
+    const double fraction = fraction_done(state, iteration, residual, target);
+    state.progress->update(fraction, "sweep " + std::to_string(iteration) + ", residual " + short_number(residual) + " of " + short_number(target));
+    return interrupted() ? 0 : 1;
+}
+
+void note_solve_parameters(Job& job) {
+    const Options& options = job.options;
+    job.report.set_parameter("solver", std::string(solver_name(options.solver)));
+    job.report.set_parameter("tolerance", options.tolerance);
+    job.report.set_parameter("max_iter", static_cast<std::int64_t>(options.max_iterations));
+    job.report.set_parameter("precision", std::string(precision_name(options.precision)));
+    if (options.sweeps > 0) job.report.set_parameter("sweeps", static_cast<std::int64_t>(options.sweeps));
+}
+
+lcl_solve_options solve_options(const Options& options, SolveProgress& state) {
+    lcl_solve_options solve = LCL_SOLVE_OPTIONS_INIT;
+    solve.solver = options.solver;
+    solve.precision = options.precision;
+    solve.tolerance = options.tolerance;
+    solve.max_iterations = options.max_iterations;
+    solve.exact_sweeps = options.sweeps;
+    solve.keep_going = options.keep_going || options.sweeps > 0;  // exactly so many sweeps, whatever they give
+    solve.progress = on_progress;
+    solve.progress_user = &state;
+    return solve;
+}
+
+bool is_result(lcl_status status) {
+    return status == LCL_ERROR_SINGULAR || status == LCL_ERROR_INDEFINITE || status == LCL_ERROR_NOT_CONVERGED;
+}
+
+/// The sentence and the places are in the solve's report too; the last error has them where that is empty.
+Failure failure_of_result(lcl_status status, const lcl_solve_report& report) {
+    Failure failure = failure_of(status);
+    if (report.message[0] != '\0') failure.message = one_line(report.message);
+    if (report.vertex_count > 0) failure.vertices.assign(report.vertices, report.vertices + report.vertex_count);
+    return failure;
+}
+
+/// The library builds kernels at their first use, mostly in the first sweeps: `compiled` seconds of its phases.
+void note_seconds(Seconds& seconds, const lcl_solve_report& report, double compiled) {
+    const double in_solve = std::min(compiled, report.seconds_solve);
+    add_seconds(seconds.compile, compiled);
+    add_seconds(seconds.solve, report.seconds_solve - in_solve);
+    add_seconds(seconds.upload, report.seconds_upload - (compiled - in_solve));
+    add_seconds(seconds.download, report.seconds_download);
+}
+
+void note_solve(Job& job, const lcl_solve_report& report, std::vector<double> residuals) {
+    residuals.resize(std::min(residuals.size(), report.residual_count));
+    job.report.solve.emplace();
+    job.report.solve->report = report;
+    job.report.solve->report.residuals = nullptr;
+    job.report.solve->residuals = std::move(residuals);
+}
+
+/// Replaces `values` (n x channels) by control points; the status is LCL_OK or one of the three results.
+lcl_status solve(Job& job, lcl_context context, lcl_operator A, std::int32_t channels, std::vector<double>& values) {
+    SolveProgress state{&job.terminal.progress(), job.options.sweeps};
+    const lcl_solve_options options = solve_options(job.options, state);
+    std::vector<double> residuals(static_cast<std::size_t>(std::min(std::max(options.max_iterations, options.exact_sweeps), most_residuals)) + 1);
+    lcl_solve_report report = LCL_SOLVE_REPORT_INIT;
+    report.residuals = residuals.data();
+    report.residual_capacity = residuals.size();
+    const double compiled = lcl_context_compile_seconds(context);
+    check_interrupt();
+    job.terminal.progress().begin("solving");
+    const lcl_status status = lcl_interpolate(A, values.data(), 0, channels, &options, values.data(), 0, &report);
+    job.terminal.progress().end();
+    if (status != LCL_OK && !is_result(status)) throw failure_of(status);
+    note_solve(job, report, std::move(residuals));
+    note_seconds(job.report.seconds, report, lcl_context_compile_seconds(context) - compiled);
+    return status;
+}
+
+/// A solve that came through on an operator near a singular one: the control points are right, but small errors in M grow in them.
+void warn_of_spectrum(Job& job, lcl_operator A) {
+    const double lambda_min = job.report.solve->report.lambda_min;
+    if (lambda_min >= nearly_singular) return;
+    lcl_diagnosis diagnosis = LCL_DIAGNOSIS_INIT;
+    check(lcl_operator_diagnose(A, &diagnosis));
+    if (diagnosis.reason[0] == '\0') return;
+    warn(job, diagnosis.reason);
+    if (job.report.vertices.empty()) job.report.vertices.assign(diagnosis.vertices, diagnosis.vertices + diagnosis.vertex_count);
+}
+
+/// "4.1e-03 (0.012 of the diagonal)"
+std::string error_text(double error, double diagonal) {
+    return short_number(error) + (diagonal > 0.0 ? " (" + short_number(error / diagonal) + " of the diagonal)" : "");
+}
+
+void say_solve(Job& job, std::size_t further_channels) {
+    const lcl_solve_report& report = job.report.solve->report;
+    const std::vector<double>& residuals = job.report.solve->residuals;
+    const double diagonal = job.report.mesh->info.diagonal;
+    job.terminal.say("solved", std::string(solver_name(report.solver)) + ", " + counted(report.iterations, "iteration", "iterations") + ", " +
+                                   precision_name(job.options.precision) + " precision: " + (report.converged ? "converged" : "not converged"));
+    if (!residuals.empty()) job.terminal.say("residual", error_text(residuals.front(), diagonal) + " before, " + error_text(report.max_error, diagonal) + " after");
+    if (further_channels > 0) job.terminal.say("channels", "largest residual " + short_number(report.channel_error) + " of their ranges");
+    if (std::isfinite(report.surface_error_bound)) job.terminal.say("surface", "at most " + error_text(report.surface_error_bound, diagonal) + " from the exact one");
+}
+
+}  // namespace
+
+void run_interpolate(Job& job) {
+    const Mesh mesh = read_sound_input(job);
+    check_output_format(job, mesh.get());
+    note_solve_parameters(job);
+    const SchemeChoice scheme = choose_scheme(job, mesh.get());
+    const std::vector<std::string> channels = choose_channels(job, mesh.get());
+    const Context context = open_device(job);
+    const Operator A = make_operator(job, context.get(), mesh.get(), scheme.options);
+    note_scheme_in_use(job, A.get());
+    say_scheme(job);
+
+    std::vector<double> values = gather_values(mesh.get(), channels);
+    const lcl_status status = solve(job, context.get(), A.get(), static_cast<std::int32_t>(3 + channels.size()), values);
+    std::optional<Failure> failure;
+    if (status != LCL_OK) failure = failure_of_result(status, job.report.solve->report);
+    say_solve(job, channels.size());
+    if (failure && job.options.sweeps > 0) {
+        warn(job, failure->message);
+        failure.reset();
+    }
+    if (failure && !job.options.keep_going) throw *failure;
+    if (!failure) warn_of_spectrum(job, A.get());
+    scatter_values(mesh.get(), channels, values);
+    write_output(job, mesh.get());
+    if (failure) throw *failure;
+}
+
+}  // namespace lcl::cli

@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <charconv>
+
+#include "host/cli/channels.h"
+#include "host/cli/commands.h"
+#include "host/cli/csv.h"
+#include "host/cli/failure.h"
+#include "host/cli/limit_step.h"
+#include "host/cli/scheme_choice.h"
+
+namespace lcl::cli {
+
+namespace {
+
+/// --alpha auto asks the operator of IN, on a device.
+void resolve_alpha(Job& job, Context& context, lcl_mesh mesh, lcl_scheme_options& scheme) {
+    if (!scheme.alpha_auto) return;
+    context = open_device(job);
+    const Operator A = make_operator(job, context.get(), mesh, scheme);
+    lcl_scheme_options in_use = LCL_SCHEME_OPTIONS_INIT;
+    check(lcl_operator_get_scheme(A.get(), &in_use));
+    scheme.alpha = in_use.alpha;
+    scheme.alpha_auto = 0;
+    note_scheme(job, scheme);
+}
+
+Mesh refined_mesh(Job& job, lcl_mesh mesh, const lcl_scheme_options& scheme) {
+    lcl_refine_options options = LCL_REFINE_OPTIONS_INIT;
+    options.levels = job.options.levels > 0 ? job.options.levels : -1;
+    lcl_mesh refined = nullptr;
+    const Phase phase(job, &Seconds::topology, "refining");
+    check(lcl_mesh_refine(mesh, &scheme, &options, &refined));
+    return Mesh(refined);
+}
+
+/// alpha and lambda rule the first refinement alone: what it gives is read without them.
+lcl_scheme_options scheme_of_refined(const Job& job, const lcl_scheme_options& scheme) {
+    lcl_scheme_options options = scheme;
+    if (job.options.levels == 0) return options;
+    options.alpha = 0.0;
+    options.lambda = 0.0;
+    options.lambda_per_vertex = nullptr;
+    return options;
+}
+
+void append(std::string& text, double value) {
+    char digits[32];
+    const auto [end, error] = std::to_chars(digits, digits + sizeof digits, value);
+    text.append(digits, error == std::errc() ? static_cast<std::size_t>(end - digits) : 0);
+}
+
+/// An isolated vertex lies on no face: its face and corner are -1, its parameters do not exist.
+void append_location(std::string& text, std::size_t vertex, std::int32_t face, std::int32_t corner, const double* uv) {
+    text += std::to_string(vertex) + "," + std::to_string(face) + "," + std::to_string(face < 0 ? -1 : corner);
+    for (int axis = 0; axis < 2; ++axis) {
+        text += ",";
+        if (face < 0) text += "nan";
+        else append(text, uv[axis]);
+    }
+    text += "\n";
+}
+
+void write_map(Job& job, lcl_mesh refined) {
+    const std::string& path = job.options.map_file;
+    const auto vertex_count = static_cast<std::size_t>(lcl_mesh_vertex_count(refined));
+    std::vector<std::int32_t> faces(vertex_count), corners(vertex_count);
+    std::vector<double> uv(2 * vertex_count);
+    check(lcl_mesh_get_locations(refined, faces.data(), corners.data(), uv.data()));
+    const Phase phase(job, &Seconds::write, "writing " + path);
+    OutputFile file(path);
+    file.write("vertex,face,corner,u,v\n");
+    std::string line;
+    for (std::size_t vertex = 0; vertex < vertex_count; ++vertex) {
+        line.clear();
+        append_location(line, vertex, faces[vertex], corners[vertex], &uv[2 * vertex]);
+        file.write(line);
+    }
+    file.finish();
+    job.terminal.say("wrote", path + ": where each of the new vertices lies");
+}
+
+}  // namespace
+
+void run_refine(Job& job) {
+    const Mesh mesh = read_sound_input(job);
+    job.report.set_parameter("levels", static_cast<std::int64_t>(job.options.levels));
+    job.report.set_parameter("limit", job.options.limit);
+    if (job.options.channels != "all" && job.options.channels != "none") choose_channels(job, mesh.get());  // names are checked; all are refined in any case
+    SchemeChoice scheme = choose_scheme(job, mesh.get());
+    Context context;
+    resolve_alpha(job, context, mesh.get(), scheme.options);
+    const Mesh refined = refined_mesh(job, mesh.get(), scheme.options);
+    say_scheme(job);
+    if (job.options.limit) {
+        job.report.set_parameter("precision", std::string(precision_name(job.options.precision)));
+        if (!context) context = open_device(job);
+        const Operator A = make_operator(job, context.get(), refined.get(), scheme_of_refined(job, scheme.options));
+        move_to_limit(job, context.get(), A.get(), refined.get(), all_channels(refined.get()));
+    }
+    warn_of_notes(job, refined.get());
+    write_output(job, refined.get());
+    if (!job.options.map_file.empty()) write_map(job, refined.get());
+}
+
+}  // namespace lcl::cli

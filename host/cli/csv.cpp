@@ -1,0 +1,175 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "host/cli/csv.h"
+
+#include <cerrno>
+#include <charconv>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <optional>
+#include <string_view>
+
+#include <unistd.h>
+
+#include "host/cli/failure.h"
+
+namespace lcl::cli {
+
+namespace {
+
+std::string_view trimmed(std::string_view text) {
+    const char* blanks = " \t\r";
+    const std::size_t first = text.find_first_not_of(blanks);
+    if (first == std::string_view::npos) return {};
+    return text.substr(first, text.find_last_not_of(blanks) - first + 1);
+}
+
+std::vector<std::string_view> cells_of(std::string_view line) {
+    std::vector<std::string_view> cells;
+    for (;;) {
+        const std::size_t comma = line.find(',');
+        cells.push_back(trimmed(line.substr(0, comma)));
+        if (comma == std::string_view::npos) return cells;
+        line.remove_prefix(comma + 1);
+    }
+}
+
+std::vector<std::string_view> words_of(std::string_view line) {
+    std::vector<std::string_view> words;
+    for (line = trimmed(line); !line.empty(); line = trimmed(line)) {
+        const std::size_t length = std::min(line.find_first_of(" \t"), line.size());
+        words.push_back(line.substr(0, length));
+        line.remove_prefix(length);
+    }
+    return words;
+}
+
+template <typename Value>
+std::optional<Value> parsed(std::string_view text) {
+    Value value{};
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
+    return value;
+}
+
+/// Calls use(line, line number) for every line that is not blank.
+template <typename Use>
+void for_each_line(const std::string& path, Use use) {
+    std::ifstream file(path);
+    if (!file || std::filesystem::is_directory(path)) fail(exit_bad_input, path + ": cannot be opened: check the name");
+    std::string line;
+    for (int number = 1; std::getline(file, line); ++number) {
+        if (!trimmed(line).empty()) use(std::string_view(line), number);
+    }
+    if (file.bad()) fail(exit_bad_input, path + ": cannot be read");
+}
+
+std::int32_t to_vertex(const std::string& path, int line, std::string_view word, std::int32_t vertex_count) {
+    const std::optional<std::int64_t> vertex = parsed<std::int64_t>(word);
+    if (!vertex) fail_at(path, line, "'" + std::string(word) + "' is not a vertex number");
+    if (*vertex < 0 || *vertex >= vertex_count)
+        fail_at(path, line, "vertex " + std::to_string(*vertex) + " is not there: the mesh has " + std::to_string(vertex_count) + ", counted from 0");
+    return static_cast<std::int32_t>(*vertex);
+}
+
+void mark_once(const std::string& path, int line, std::int32_t vertex, std::vector<char>& seen) {
+    char& mark = seen[static_cast<std::size_t>(vertex)];
+    if (mark) fail_at(path, line, "vertex " + std::to_string(vertex) + " is listed twice: keep one of the lines");
+    mark = 1;
+}
+
+void check_header(const std::string& path, std::string_view line, int number, const std::string& header) {
+    if (cells_of(line) != cells_of(header)) fail_at(path, number, "the header is '" + std::string(trimmed(line)) + "', it must be '" + header + "'");
+}
+
+void add_row(Table& table, std::string_view line, int number) {
+    const std::vector<std::string_view> cells = cells_of(line);
+    if (cells.size() != table.columns)
+        fail_at(table.path, number, std::to_string(cells.size()) + " values where the header has " + std::to_string(table.columns));
+    for (const std::string_view cell : cells) {
+        const std::optional<double> value = parsed<double>(cell);
+        if (!value) fail_at(table.path, number, "'" + std::string(cell) + "' is not a number");
+        table.values.push_back(*value);
+    }
+    table.lines.push_back(number);
+}
+
+}  // namespace
+
+void fail_at(const std::string& path, int line, const std::string& text) {
+    fail(exit_bad_input, path + ":" + std::to_string(line) + ": " + text);
+}
+
+Table read_table(const std::string& path, const std::string& header) {
+    Table table;
+    table.path = path;
+    for_each_line(path, [&](std::string_view line, int number) {
+        if (table.columns > 0) return add_row(table, line, number);
+        check_header(path, line, number, header);
+        table.columns = cells_of(header).size();
+    });
+    if (table.columns == 0) fail_at(path, 1, "the file is empty: it must begin with the header '" + header + "'");
+    return table;
+}
+
+std::int32_t vertex_of_row(const Table& table, std::size_t row, std::vector<char>& seen) {
+    const double value = table.values[row * table.columns];
+    const double count = static_cast<double>(seen.size());
+    if (!(value >= 0.0 && value < count) || value != static_cast<double>(static_cast<std::int64_t>(value)))
+        fail_at(table.path, table.lines[row], "the vertex is not a whole number from 0 to " + std::to_string(static_cast<std::int64_t>(seen.size()) - 1));
+    const auto vertex = static_cast<std::int32_t>(value);
+    mark_once(table.path, table.lines[row], vertex, seen);
+    return vertex;
+}
+
+std::vector<std::int32_t> read_vertex_list(const std::string& path, std::int32_t vertex_count) {
+    std::vector<std::int32_t> vertices;
+    std::vector<char> seen(static_cast<std::size_t>(vertex_count), 0);
+    for_each_line(path, [&](std::string_view line, int number) {
+        const std::vector<std::string_view> words = words_of(line);
+        if (words.size() != 1) fail_at(path, number, "one vertex number a line is expected, here are " + std::to_string(words.size()) + " words");
+        vertices.push_back(to_vertex(path, number, words[0], vertex_count));
+        mark_once(path, number, vertices.back(), seen);
+    });
+    if (vertices.empty()) fail_at(path, 1, "the file lists no vertex: one number a line is expected");
+    return vertices;
+}
+
+PairList read_pair_list(const std::string& path, std::int32_t vertex_count) {
+    PairList list;
+    for_each_line(path, [&](std::string_view line, int number) {
+        const std::vector<std::string_view> words = words_of(line);
+        if (words.size() != 2) fail_at(path, number, "two vertex numbers a line are expected, here are " + std::to_string(words.size()) + " words");
+        list.pairs.push_back({to_vertex(path, number, words[0], vertex_count), to_vertex(path, number, words[1], vertex_count)});
+        list.lines.push_back(number);
+    });
+    return list;
+}
+
+OutputFile::OutputFile(const std::string& path) : path_(path), temporary_(path + "." + std::to_string(getpid()) + ".part") {
+    file_ = std::fopen(temporary_.c_str(), "wb");
+    if (file_ == nullptr) fail_to_write();
+}
+
+OutputFile::~OutputFile() {
+    if (file_ == nullptr) return;
+    std::fclose(file_);
+    std::remove(temporary_.c_str());
+}
+
+void OutputFile::fail_to_write() const {
+    fail(exit_error, path_ + ": cannot be written: " + std::strerror(errno));
+}
+
+void OutputFile::write(const std::string& text) {
+    if (std::fwrite(text.data(), 1, text.size(), file_) != text.size()) fail_to_write();
+}
+
+void OutputFile::finish() {
+    if (std::fflush(file_) != 0) fail_to_write();
+    if (std::rename(temporary_.c_str(), path_.c_str()) != 0) fail_to_write();
+    std::fclose(file_);
+    file_ = nullptr;
+}
+
+}  // namespace lcl::cli

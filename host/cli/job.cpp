@@ -1,0 +1,186 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "host/cli/job.h"
+
+#include <algorithm>
+
+#include "host/cli/failure.h"
+#include "host/cli/features.h"
+#include "host/cli/interrupt.h"
+#include "host/cli/scheme_choice.h"
+
+namespace lcl::cli {
+
+namespace {
+
+void log_to_terminal(void* user, std::int32_t level, const char* message) {
+    Job& job = *static_cast<Job*>(user);
+    if (level <= LCL_LOG_WARNING) warn(job, message);
+    else job.terminal.log(message);
+}
+
+MeshSummary summary_of(lcl_mesh mesh) {
+    MeshSummary summary;
+    check(lcl_mesh_get_info(mesh, &summary.info));
+    summary.face_degrees = histogram_of(mesh, LCL_HISTOGRAM_FACE_DEGREES);
+    if (summary.info.edges >= 0) summary.valences = histogram_of(mesh, LCL_HISTOGRAM_VALENCES);
+    return summary;
+}
+
+void say_mesh(Job& job, lcl_mesh mesh) {
+    const lcl_mesh_info& info = job.report.mesh->info;
+    std::string text = shown_input(job.options) + ": " + counted(lcl_mesh_vertex_count(mesh), "vertex", "vertices") + ", " +
+                       counted(lcl_mesh_face_count(mesh), "face", "faces");
+    if (info.edges >= 0) {
+        text += ", " + counted(info.edges, "edge", "edges") + "; ";
+        text += info.boundary_loops == 0 ? "closed" : counted(info.boundary_loops, "boundary loop", "boundary loops");
+        text += ", " + counted(info.components, "component", "components");
+        if (info.isolated_vertices > 0) text += ", " + counted(info.isolated_vertices, "isolated vertex", "isolated vertices");
+        if (info.creases > 0) text += ", " + counted(info.creases, "crease edge", "crease edges");
+    }
+    job.terminal.say("read", text);
+}
+
+void note_boundary(Job& job, lcl_mesh mesh) {
+    lcl_boundary boundary = LCL_BOUNDARY_DEFAULT;
+    if (lcl_mesh_get_features(mesh, &boundary, nullptr, nullptr, nullptr, nullptr) != LCL_OK) return;
+    if (boundary == LCL_BOUNDARY_DEFAULT) boundary = LCL_BOUNDARY_EDGE_AND_CORNER;
+    job.report.set_parameter("boundary", std::string(boundary_name(boundary)));
+}
+
+void require_precision(const Job& job, const lcl_device_info& device) {
+    if (job.options.precision != LCL_PRECISION_DOUBLE || device.has_double) return;
+    fail(exit_device, std::string("the device '") + device.name + "' has no double precision: take --precision mixed, or another --device (`limitcl devices` lists them)");
+}
+
+}  // namespace
+
+Phase::Phase(Job& job, double Seconds::*seconds, const std::string& what, lcl_context context)
+    : job_(job), seconds_(seconds), context_(context), compiled_(lcl_context_compile_seconds(context)), start_(std::chrono::steady_clock::now()) {
+    check_interrupt();
+    job.terminal.progress().begin(what);
+}
+
+Phase::~Phase() {
+    job_.terminal.progress().end();
+    const double elapsed = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+    const double compiled = lcl_context_compile_seconds(context_) - compiled_;
+    add_seconds(job_.report.seconds.*seconds_, elapsed - compiled);
+    if (context_ != nullptr) add_seconds(job_.report.seconds.compile, compiled);
+}
+
+void add_seconds(double& phase, double seconds) {
+    phase = std::max(phase, 0.0) + std::max(seconds, 0.0);
+}
+
+void warn(Job& job, const std::string& text) {
+    auto& warnings = job.report.warnings;
+    if (std::find(warnings.begin(), warnings.end(), text) != warnings.end()) return;
+    warnings.push_back(text);
+    job.terminal.warn(text);
+}
+
+void warn_of_notes(Job& job, lcl_mesh mesh) {
+    for (int index = 0; index < lcl_mesh_note_count(mesh, LCL_NOTE_WARNING); ++index) warn(job, lcl_mesh_note(mesh, LCL_NOTE_WARNING, index));
+    for (int index = 0; index < lcl_mesh_note_count(mesh, LCL_NOTE_IGNORED_TAG); ++index)
+        warn(job, shown_input(job.options) + ": the tag '" + lcl_mesh_note(mesh, LCL_NOTE_IGNORED_TAG, index) + "' is ignored");
+}
+
+Mesh read_input(Job& job) {
+    Mesh mesh;
+    {
+        const Phase phase(job, &Seconds::read, "reading " + shown_input(job.options));
+        lcl_mesh handle = nullptr;
+        const lcl_status status = lcl_mesh_read(job.options.input.c_str(), job.options.input == "-" ? job.options.format : LCL_FORMAT_BY_ENDING, &handle);
+        mesh.reset(handle);
+        check_interrupt();  // standard input that was waiting comes back with an error of its own
+        check(status);
+    }
+    add_features(job, mesh.get());
+    job.report.mesh = summary_of(mesh.get());
+    note_boundary(job, mesh.get());
+    job.report.scheme = scheme_name(default_scheme(job.options, mesh.get()));
+    say_mesh(job, mesh.get());
+    warn_of_notes(job, mesh.get());
+    return mesh;
+}
+
+Mesh read_sound_input(Job& job) {
+    Mesh mesh = read_input(job);
+    if (lcl_mesh_face_count(mesh.get()) == 0) fail(exit_bad_input, shown_input(job.options) + ": the mesh has no faces: a surface needs at least one");
+    check(lcl_mesh_validate(mesh.get()));
+    check_interrupt();
+    return mesh;
+}
+
+Histogram histogram_of(lcl_mesh mesh, lcl_histogram which) {
+    size_t size = 0;
+    check(lcl_mesh_get_histogram(mesh, which, nullptr, nullptr, 0, &size));
+    std::vector<std::int32_t> keys(size), counts(size);
+    check(lcl_mesh_get_histogram(mesh, which, keys.data(), counts.data(), size, &size));
+    Histogram histogram;
+    for (size_t index = 0; index < keys.size(); ++index) histogram.emplace_back(keys[index], counts[index]);
+    return histogram;
+}
+
+void check_output_format(const Job& job, lcl_mesh mesh) {
+    lcl_format format = job.options.format;
+    if (job.options.output != "-") check(lcl_format_of_path(job.options.output.c_str(), &format));
+    if (format != LCL_FORMAT_STL) return;
+    for (const auto& [degree, count] : histogram_of(mesh, LCL_HISTOGRAM_FACE_DEGREES)) {
+        if (degree != 3 && count > 0)
+            fail(exit_usage, "STL holds triangles only, and the mesh has " + counted(count, "face", "faces") + " with " + std::to_string(degree) +
+                                 " sides: write to .obj, .off, .ply or .om");
+    }
+}
+
+Context open_device(Job& job) {
+    check_interrupt();
+    lcl_context_options options = LCL_CONTEXT_OPTIONS_INIT;
+    options.device = job.options.device.empty() ? nullptr : job.options.device.c_str();
+    options.log = log_to_terminal;
+    options.log_user = &job;
+    options.log_level = job.options.verbosity == 0 ? LCL_LOG_WARNING : job.options.verbosity == 1 ? LCL_LOG_INFO : LCL_LOG_DEBUG;
+    lcl_context handle = nullptr;
+    check(lcl_context_create(&options, &handle));
+    Context context(handle);
+    lcl_device_info device = LCL_DEVICE_INFO_INIT;
+    check(lcl_context_get_device(handle, &device));
+    job.report.device = device;
+    job.terminal.say("device", std::string(device.name) + " (" + device.platform + ", " + device.version + ")");
+    require_precision(job, device);
+    return context;
+}
+
+Operator make_operator(Job& job, lcl_context context, lcl_mesh mesh, const lcl_scheme_options& scheme) {
+    const Phase phase(job, &Seconds::topology, "building the limit operator", context);
+    lcl_operator handle = nullptr;
+    check(lcl_operator_create(context, mesh, &scheme, &handle));
+    return Operator(handle);
+}
+
+void write_output(Job& job, lcl_mesh mesh) {
+    const std::string shown = job.options.output == "-" ? "standard output" : job.options.output;
+    {
+        const Phase phase(job, &Seconds::write, "writing " + shown);
+        check(lcl_mesh_write(mesh, job.options.output.c_str(), job.options.output == "-" ? job.options.format : LCL_FORMAT_BY_ENDING));
+    }
+    warn_of_notes(job, mesh);
+    job.terminal.say("wrote", shown + ": " + counted(lcl_mesh_vertex_count(mesh), "vertex", "vertices") + ", " + counted(lcl_mesh_face_count(mesh), "face", "faces"));
+}
+
+std::string shown_input(const Options& options) {
+    return options.input == "-" ? "standard input" : options.input;
+}
+
+void say_seconds(Job& job) {
+    const Seconds& seconds = job.report.seconds;
+    const std::pair<const char*, double> phases[] = {{"read", seconds.read}, {"topology", seconds.topology}, {"compile", seconds.compile},
+        {"upload", seconds.upload}, {"solve", seconds.solve}, {"download", seconds.download}, {"write", seconds.write}, {"total", seconds.total}};
+    std::vector<std::string> parts;
+    for (const auto& [name, value] : phases) {
+        if (value >= 0.0) parts.push_back(std::string(name) + " " + short_number(value));
+    }
+    job.terminal.say("seconds", join(parts, ", "));
+}
+
+}  // namespace lcl::cli

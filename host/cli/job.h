@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The steps that commands share: read, check, open a device, make an operator, write. Each fills its part of the report and of the summary.
+#pragma once
+
+#include <chrono>
+#include <string>
+#include <vector>
+
+#include "host/cli/handles.h"
+#include "host/cli/options.h"
+#include "host/cli/report.h"
+#include "host/cli/terminal.h"
+
+namespace lcl::cli {
+
+/// One run of the program.
+struct Job {
+    const Options& options;
+    Terminal& terminal;
+    Report& report;
+};
+
+/// Times a part of a command and shows it on the progress line; the seconds are added when it ends, also by an exception.
+/// What a context spends on building programs meanwhile goes to `compile` instead.
+class Phase {
+public:
+    Phase(Job& job, double Seconds::*seconds, const std::string& what, lcl_context context = nullptr);
+    ~Phase();
+    Phase(const Phase&) = delete;
+    Phase& operator=(const Phase&) = delete;
+
+private:
+    Job& job_;
+    double Seconds::*seconds_;
+    lcl_context context_;
+    double compiled_;
+    std::chrono::steady_clock::time_point start_;
+};
+
+/// Adds to a phase of the report.
+void add_seconds(double& phase, double seconds);
+
+/// A warning in the report (once) and on standard error.
+void warn(Job& job, const std::string& text);
+/// The notes of a mesh that are warnings, as warnings.
+void warn_of_notes(Job& job, lcl_mesh mesh);
+
+/// IN with the sharp features of the options; the report gets its counts. Not checked further.
+Mesh read_input(Job& job);
+/// The same, refused (exit code 3) where it has no faces or is not sound.
+Mesh read_sound_input(Job& job);
+Histogram histogram_of(lcl_mesh mesh, lcl_histogram which);
+
+/// Refuses what OUT's format cannot hold before anything is computed.
+void check_output_format(const Job& job, lcl_mesh mesh);
+
+/// The device of the options. Exit code 5 where there is none, or where it has no doubles and they were asked for.
+Context open_device(Job& job);
+/// Operator of a mesh; its seconds go to topology and compile.
+Operator make_operator(Job& job, lcl_context context, lcl_mesh mesh, const lcl_scheme_options& scheme);
+
+/// Writes OUT: complete or not at all.
+void write_output(Job& job, lcl_mesh mesh);
+
+/// Name of a file for people: standard input or output have no name.
+std::string shown_input(const Options& options);
+/// The line of the seconds by phase.
+void say_seconds(Job& job);
+
+}  // namespace lcl::cli

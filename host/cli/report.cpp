@@ -1,0 +1,149 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "host/cli/report.h"
+
+#include <cmath>
+
+#include <nlohmann/json.hpp>
+
+#include "host/cli/options.h"
+
+namespace lcl::cli {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json number_or_null(double value) {
+    return std::isfinite(value) ? Json(value) : Json(nullptr);
+}
+
+Json where_json(const std::vector<std::int32_t>& vertices, const std::vector<std::int32_t>& faces) {
+    return {{"vertices", vertices}, {"faces", faces}};
+}
+
+Json histogram_json(const Histogram& histogram) {
+    Json json = Json::object();
+    for (const auto& [key, count] : histogram) json[std::to_string(key)] = count;
+    return json;
+}
+
+Json mesh_json(const MeshSummary& mesh) {
+    const std::pair<const char*, std::int32_t> counts[] = {{"vertices", mesh.info.vertices}, {"faces", mesh.info.faces}, {"edges", mesh.info.edges},
+        {"boundary_edges", mesh.info.boundary_edges}, {"boundary_loops", mesh.info.boundary_loops}, {"components", mesh.info.components},
+        {"isolated_vertices", mesh.info.isolated_vertices}};
+    Json json = Json::object();
+    for (const auto& [name, count] : counts) {
+        if (count >= 0) json[name] = count;
+    }
+    json["face_degrees"] = histogram_json(mesh.face_degrees);
+    if (mesh.info.edges < 0) return json;
+    json["valences"] = histogram_json(mesh.valences);
+    json["creases"] = mesh.info.creases;
+    json["corners"] = mesh.info.corners;
+    return json;
+}
+
+Json parameters_json(const Report& report) {
+    Json json = Json::object();
+    for (const auto& [name, value] : report.parameters) json[name] = std::visit([](const auto& alternative) { return Json(alternative); }, value);
+    return json;
+}
+
+void add_solve(Json& json, const SolveSummary& solve) {
+    json["solver"] = solver_name(solve.report.solver);
+    json["converged"] = solve.report.converged != 0;
+    json["iterations"] = solve.report.iterations;
+    Json residuals = Json::array();
+    for (const double residual : solve.residuals) residuals.push_back(number_or_null(residual));
+    json["residuals"] = residuals;
+    json["lambda_min"] = number_or_null(solve.report.lambda_min);
+    json["max_error"] = number_or_null(solve.report.max_error);
+    json["surface_error_bound"] = number_or_null(solve.report.surface_error_bound);
+}
+
+/// "NAME COUNT" as the library notes it.
+Json unknown_statements_json(const std::vector<std::string>& notes) {
+    Json json = Json::object();
+    for (const std::string& note : notes) {
+        const std::size_t blank = note.rfind(' ');
+        json[note.substr(0, blank)] = blank == std::string::npos ? 1 : std::stoll(note.substr(blank + 1));
+    }
+    return json;
+}
+
+void add_info(Json& json, const InfoSummary& info) {
+    Json schemes = Json::object();
+    for (const SchemeSummary& scheme : info.schemes)
+        schemes[scheme.name] = {{"suitable", scheme.suitable}, {"singular", scheme.singular}, {"reason", scheme.reason}};
+    json["schemes"] = schemes;
+    json["tags_ignored"] = info.tags_ignored;
+    json["unknown_statements"] = unknown_statements_json(info.unknown_statements);
+    if (!info.refused_tag.empty()) json["tag_refused"] = info.refused_tag;
+    Json defects = Json::array();
+    for (const DefectSummary& defect : info.defects)
+        defects.push_back({{"kind", defect.kind}, {"where", where_json(defect.vertices, defect.faces)}, {"count", defect.count}, {"message", defect.message}});
+    json["defects"] = defects;
+}
+
+Json device_json(const lcl_device_info& device) {
+    return {{"index", device.index}, {"platform", device.platform}, {"name", device.name}, {"version", device.version}, {"vendor", device.vendor},
+        {"driver", device.driver}, {"type", device.is_gpu ? "gpu" : device.is_cpu ? "cpu" : "other"}, {"double", device.has_double != 0},
+        {"compute_units", device.compute_units}, {"clock_mhz", device.clock_mhz}, {"memory_bytes", device.memory_bytes},
+        {"max_allocation_bytes", device.max_allocation_bytes}};
+}
+
+Json kernel_json(const KernelCheck& check) {
+    return {{"kernel", check.kernel}, {"what", check.what}, {"difference", number_or_null(check.difference)}, {"tolerance", check.tolerance}, {"passed", check.passed}};
+}
+
+void add_lists(Json& json, const Report& report) {
+    if (report.devices) {
+        json["devices"] = Json::array();
+        for (const lcl_device_info& device : *report.devices) json["devices"].push_back(device_json(device));
+    }
+    if (report.kernels) {
+        json["kernels"] = Json::array();
+        for (const KernelCheck& check : *report.kernels) json["kernels"].push_back(kernel_json(check));
+    }
+}
+
+Json seconds_json(const Seconds& seconds) {
+    const std::pair<const char*, double> phases[] = {{"read", seconds.read}, {"topology", seconds.topology}, {"compile", seconds.compile},
+        {"upload", seconds.upload}, {"solve", seconds.solve}, {"download", seconds.download}, {"write", seconds.write}, {"total", seconds.total}};
+    Json json = Json::object();
+    for (const auto& [name, value] : phases) {
+        if (value >= 0.0) json[name] = value;
+    }
+    return json;
+}
+
+}  // namespace
+
+void Report::set_parameter(const std::string& name, Parameter value) {
+    for (auto& [known, old] : parameters) {
+        if (known == name) {
+            old = std::move(value);
+            return;
+        }
+    }
+    parameters.emplace_back(name, std::move(value));
+}
+
+std::string to_json(const Report& report) {
+    Json json = {{"limitcl", lcl_version_string()}, {"command", report.command}, {"status", report.status}, {"message", report.message},
+        {"warnings", report.warnings}, {"where", where_json(report.vertices, report.faces)}};
+    if (report.device) json["device"] = {{"platform", report.device->platform}, {"name", report.device->name}, {"version", report.device->version}};
+    if (report.mesh) {
+        json["mesh"] = mesh_json(*report.mesh);
+        json["diagonal"] = number_or_null(report.mesh->info.diagonal);
+    }
+    if (!report.scheme.empty()) json["scheme"] = report.scheme;
+    json["parameters"] = parameters_json(report);
+    if (report.solve) add_solve(json, *report.solve);
+    if (report.info) add_info(json, *report.info);
+    add_lists(json, report);
+    json["seconds"] = seconds_json(report.seconds);
+    return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";  // names of files need not be UTF-8
+}
+
+}  // namespace lcl::cli

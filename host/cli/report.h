@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What a command found out, and the JSON of it (--report).
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include <limitcl/limitcl.h>
+
+namespace lcl::cli {
+
+using Histogram = std::vector<std::pair<std::int32_t, std::int32_t>>;
+using Parameter = std::variant<double, std::int64_t, bool, std::string, std::vector<std::string>>;
+
+struct MeshSummary {
+    lcl_mesh_info info = LCL_MESH_INFO_INIT;  ///< edges -1: the mesh is not sound, and all that follows from edges is unknown
+    Histogram face_degrees, valences;
+};
+
+struct SolveSummary {
+    lcl_solve_report report = LCL_SOLVE_REPORT_INIT;
+    std::vector<double> residuals;
+};
+
+struct SchemeSummary {
+    std::string name;
+    bool suitable = false, singular = false;
+    std::string reason;
+};
+
+struct DefectSummary {
+    std::string kind, message;
+    std::int64_t count = 0;
+    std::vector<std::int32_t> vertices, faces;
+};
+
+struct InfoSummary {
+    std::vector<SchemeSummary> schemes;
+    std::vector<std::string> tags_ignored, unknown_statements;
+    std::string refused_tag;
+    std::vector<DefectSummary> defects;
+};
+
+struct KernelCheck {
+    std::string kernel, what;
+    double difference = 0.0, tolerance = 0.0;
+    bool passed = false;
+};
+
+/// Seconds by phase; negative: the phase did not happen.
+struct Seconds {
+    double read = -1, topology = -1, compile = -1, upload = -1, solve = -1, download = -1, write = -1, total = -1;
+};
+
+/// Everything as far as known; what is not known is left out of the JSON.
+struct Report {
+    std::string command;
+    std::string status = "ok", message;
+    std::vector<std::string> warnings;
+    std::vector<std::int32_t> vertices, faces;  ///< where, the first ten
+    std::optional<lcl_device_info> device;
+    std::optional<MeshSummary> mesh;
+    std::string scheme;
+    std::vector<std::pair<std::string, Parameter>> parameters;
+    std::optional<SolveSummary> solve;
+    std::optional<InfoSummary> info;
+    std::optional<std::vector<lcl_device_info>> devices;
+    std::optional<std::vector<KernelCheck>> kernels;
+    Seconds seconds;
+
+    /// Sets a parameter, or replaces its value.
+    void set_parameter(const std::string& name, Parameter value);
+};
+
+/// One JSON object with a line break at its end.
+std::string to_json(const Report& report);
+
+}  // namespace lcl::cli

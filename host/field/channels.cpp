@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "host/field/channels.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "host/parallel.h"
+
+namespace lcl {
+
+std::vector<ChannelBlock> channel_blocks(int channels) {
+    const auto width_of = [](int count) { return count > 2 ? 4 : count; };
+    std::vector<ChannelBlock> blocks;
+    for (int first = 0; first < channels;) {
+        const int count = std::min(channels - first, first == 0 ? 3 : 4);
+        blocks.push_back({first, count, width_of(count)});
+        first += count;
+    }
+    return blocks;
+}
+
+Transform fit_transform(const Plan& plan, const double* values, std::size_t stride, int channels) {
+    constexpr double infinity = std::numeric_limits<double>::infinity();
+    std::vector<double> low(channels, infinity), high(channels, -infinity);
+    for (Index row = plan.isolated_count; row < plan.vertex_count; ++row) {
+        const double* value = values + static_cast<std::size_t>(plan.vertex_of_row[row]) * stride;
+        for (int c = 0; c < channels; ++c) {
+            low[c] = std::min(low[c], value[c]);
+            high[c] = std::max(high[c], value[c]);
+        }
+    }
+    Transform transform{std::vector<double>(channels, 0.0), std::vector<double>(channels, 1.0)};
+    if (plan.isolated_count == plan.vertex_count) return transform;
+    double diagonal = 0;
+    for (int c = 0; c < std::min(channels, 3); ++c) diagonal = std::hypot(diagonal, high[c] - low[c]);
+    for (int c = 0; c < channels; ++c) {
+        const double size = c < 3 ? diagonal : high[c] - low[c];
+        transform.centre[c] = low[c] + (high[c] - low[c]) / 2;
+        if (size > 0) transform.scale[c] = 1 / size;
+    }
+    return transform;
+}
+
+std::vector<double> to_plan_order(const Plan& plan, const Transform& transform, const double* values, std::size_t stride, int channels) {
+    std::vector<double> out(static_cast<std::size_t>(plan.vertex_count) * channels);
+    parallel_for(plan.vertex_count, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t row = std::max<std::size_t>(begin, plan.isolated_count); row < end; ++row) {
+            const double* value = values + static_cast<std::size_t>(plan.vertex_of_row[row]) * stride;
+            for (int c = 0; c < channels; ++c) out[row * channels + c] = (value[c] - transform.centre[c]) * transform.scale[c];
+        }
+    });
+    return out;
+}
+
+void from_plan_order(const Plan& plan, const Transform& transform, const std::vector<double>& values, int channels, double* out, std::size_t stride) {
+    parallel_for(plan.vertex_count, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t row = std::max<std::size_t>(begin, plan.isolated_count); row < end; ++row) {
+            double* value = out + static_cast<std::size_t>(plan.vertex_of_row[row]) * stride;
+            for (int c = 0; c < channels; ++c) value[c] = values[row * channels + c] / transform.scale[c] + transform.centre[c];
+        }
+    });
+}
+
+}  // namespace lcl

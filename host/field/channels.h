@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// How n x c values of a caller lie in device fields: in blocks of at most four channels, centred and scaled.
+#pragma once
+
+#include <vector>
+
+#include "host/operator/plan.h"
+
+namespace lcl {
+
+/// Channels [first, first + count) lie in one buffer of rows of `width` (1, 2 or 4) components.
+struct ChannelBlock {
+    int first = 0, count = 0, width = 0;
+};
+
+/// The first block holds the position, x, y, z (or fewer), alone: its norm is the residual E_k. Further channels follow in fours.
+std::vector<ChannelBlock> channel_blocks(int channels);
+
+/// stored = (value - centre) * scale, one of each a channel. Rows of A sum to 1, so A commutes with it, and models that are far away or huge lose nothing in float.
+struct Transform {
+    std::vector<double> centre, scale;
+};
+
+/// Positions: centre and inverse diagonal of the bounding box; further channels: middle and inverse range. 1 where a range is 0. Isolated vertices are left out.
+/// values: row v of `stride` doubles belongs to vertex v.
+Transform fit_transform(const Plan& plan, const double* values, std::size_t stride, int channels);
+
+/// Values in the plan's order, transformed: vertex_count x channels. Isolated vertices, which may be anywhere, become 0.
+std::vector<double> to_plan_order(const Plan& plan, const Transform& transform, const double* values, std::size_t stride, int channels);
+
+/// The inverse; writes channels doubles at out + v * stride for every vertex v but isolated ones.
+void from_plan_order(const Plan& plan, const Transform& transform, const std::vector<double>& values, int channels, double* out, std::size_t stride);
+
+}  // namespace lcl

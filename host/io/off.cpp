@@ -1,0 +1,261 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// OFF as Geomview describes it: http://www.geomview.org/docs/html/OFF.html
+//
+//   [ST][C][N]OFF                    the word may be missing; STOFF, COFF, NOFF and their mixtures say what follows x, y, z
+//   vertices faces edges
+//   x y z [nx ny nz] [r g b a] [s t]
+//   n v0 v1 .. [colour]              a face
+//
+// Numbers may be spread over lines, save that what follows a face's corners, and a vertex's colour (three or four numbers), ends with its line.
+// Dropped: normals, face colours. Refused: binary OFF, and points of other than three coordinates (4OFF, nOFF).
+#include <algorithm>
+#include <cmath>
+
+#include "host/io/format.h"
+#include "host/io/number_write.h"
+#include "host/io/text_scan.h"
+
+namespace lcl {
+namespace {
+
+constexpr const char* colour_names[] = {"red", "green", "blue", "alpha"};
+constexpr double no_alpha = -1;  // of a vertex whose colour has three numbers
+
+class OffReader {
+public:
+    explicit OffReader(const InputBytes& input) : scan_(input, '#'), size_(input.size) {}
+
+    MeshFile read() {
+        read_header();
+        read_counts();
+        read_vertices();
+        read_faces();
+        finish();
+        return std::move(file_);
+    }
+
+private:
+    void read_header() {
+        scan_.skip_space();
+        if (scan_.at_end()) scan_.fail(scan_.at(), "the file has no content but comments; it holds no mesh");
+        if (*scan_.at() >= '0' && *scan_.at() <= '9' && !is_four_off()) return;  // the word OFF may be missing
+        const char* first = scan_.at();
+        has_texture_coordinates_ = take("ST");
+        has_colours_ = take("C");
+        has_normals_ = take("N");
+        if (take("4") || take("n")) scan_.fail(first, "OFF with other than three coordinates a point (4OFF, nOFF) is not read; convert it to plain OFF");
+        if (!take("OFF")) scan_.fail(first, "'" + printable(scan_.word()) + "' was found where the word OFF was expected; is this an OFF file?");
+        scan_.skip_blanks();
+        if (take("BINARY")) scan_.fail(first, "binary OFF is not read; convert it to text OFF, or to PLY");
+    }
+
+    bool is_four_off() const { return scan_.remaining() > 4 && std::string_view(scan_.at(), 4) == "4OFF"; }
+
+    bool take(std::string_view text) {
+        if (scan_.remaining() < text.size() || std::string_view(scan_.at(), text.size()) != text) return false;
+        scan_.move_to(scan_.at() + text.size());
+        return true;
+    }
+
+    void read_counts() {
+        vertex_count_ = read_count("the number of vertices", 6);  // "0 0 0\n"
+        face_count_ = read_count("the number of faces", 2);       // "0\n"
+        scan_.skip_blanks();
+        if (!scan_.at_line_end()) scan_.integer("the number of edges");
+    }
+
+    /// A count that the rest of the file can hold, at `smallest` bytes each.
+    std::size_t read_count(const char* what, std::size_t smallest) {
+        scan_.skip_space();
+        const char* first = scan_.at();
+        const std::string_view digits = scan_.word();
+        scan_.move_to(first);
+        const bool is_too_long = digits.size() > 18 && std::all_of(digits.begin(), digits.end(), [](char c) { return c >= '0' && c <= '9'; });
+        const std::int64_t count = is_too_long ? std::numeric_limits<std::int64_t>::max() : scan_.integer(what);
+        if (count < 0) scan_.fail(first, std::string(what) + " is " + std::to_string(count) + "; it cannot be negative");
+        // The last line may lack its end.
+        if (static_cast<std::uint64_t>(count) > (scan_.remaining() + 1) / smallest || count > std::numeric_limits<Index>::max())
+            scan_.fail(first, std::string(what) + " is given as " + printable(digits) + ", more than the file of " + std::to_string(size_) +
+                                  " bytes can hold; correct the header");
+        return static_cast<std::size_t>(count);
+    }
+
+    void read_vertices() {
+        file_.mesh.vertex_count = static_cast<Index>(vertex_count_);
+        file_.mesh.positions.resize(3 * vertex_count_);
+        if (has_texture_coordinates_) file_.uvs.values.resize(2 * vertex_count_);
+        for (std::size_t v = 0; v < vertex_count_; ++v) {
+            read_numbers(&file_.mesh.positions[3 * v], 3, "a coordinate");
+            double normal[3];
+            if (has_normals_) read_numbers(normal, 3, "a coordinate of a normal");
+            if (has_colours_) read_colour(v);
+            if (has_texture_coordinates_) read_numbers(&file_.uvs.values[2 * v], 2, "a texture coordinate");
+            skip_extras(vertices_with_extras_);
+        }
+    }
+
+    void read_numbers(double* values, int count, const char* what) {
+        for (int i = 0; i < count; ++i) {
+            scan_.skip_space();
+            values[i] = scan_.number(what);
+        }
+    }
+
+    /// Three or four numbers: alpha may be missing where nothing else follows.
+    void read_colour(std::size_t vertex) {
+        double values[4];
+        int count = 0;
+        for (scan_.skip_blanks(); count < 3 || (count < 4 && !scan_.at_line_end()); scan_.skip_blanks(), ++count) {
+            const char* first = scan_.at();
+            values[count] = scan_.number("a component of a colour");
+            colours_are_whole_ = colours_are_whole_ && std::all_of(first, scan_.at(), [](char c) { return c >= '0' && c <= '9'; });
+            largest_colour_ = std::max(largest_colour_, values[count]);
+        }
+        for (int i = 0; i < count; ++i) {
+            colours_[i].resize(vertex, no_alpha);
+            colours_[i].push_back(values[i]);
+        }
+    }
+
+    /// What the line holds beyond what was expected is skipped; counts the lines where there was something.
+    void skip_extras(std::size_t& lines_with_extras) {
+        scan_.skip_blanks();
+        lines_with_extras += !scan_.at_line_end();
+        scan_.skip_line();
+    }
+
+    void read_faces() {
+        PolygonMesh& mesh = file_.mesh;
+        mesh.face_offsets.reserve(face_count_ + 1);
+        mesh.face_vertices.reserve(4 * face_count_);
+        for (std::size_t f = 0; f < face_count_; ++f) {
+            scan_.skip_space();
+            const char* first = scan_.at();
+            const std::int64_t degree = scan_.integer("the number of a face's corners");
+            if (degree < 0 || static_cast<std::uint64_t>(degree) > scan_.remaining() / 2)
+                scan_.fail(first, "face " + std::to_string(f) + " is given " + std::to_string(degree) + " corners, which the file cannot hold");
+            for (std::int64_t c = 0; c < degree; ++c) {
+                scan_.skip_space();
+                mesh.face_vertices.push_back(scan_.index("a vertex of a face"));
+            }
+            if (mesh.face_vertices.size() > static_cast<std::size_t>(std::numeric_limits<Index>::max()))
+                scan_.fail(first, "the file has more than 2147483647 face corners, the most that can be numbered");
+            mesh.face_offsets.push_back(static_cast<Index>(mesh.face_vertices.size()));
+            skip_extras(faces_with_extras_);
+        }
+        scan_.skip_space();
+        if (!scan_.at_end()) file_.warnings.push_back(scan_.place(scan_.at()) + "text behind the last face was ignored");
+    }
+
+    void finish() {
+        finish_colours();
+        if (has_texture_coordinates_) file_.uvs.corner_indices = file_.mesh.face_vertices;
+        if (vertices_with_extras_ > 0)
+            file_.warnings.push_back(std::to_string(vertices_with_extras_) + " vertex lines have more numbers than the word " +
+                                     (has_colours_ || has_normals_ || has_texture_coordinates_ ? "before OFF" : "OFF") + " announces; those were dropped");
+        if (faces_with_extras_ > 0) file_.warnings.push_back("the colours of " + std::to_string(faces_with_extras_) + " faces were dropped");
+        for (const Index v : file_.uvs.corner_indices) {
+            if (v >= 0 && v < file_.mesh.vertex_count) continue;
+            file_.uvs = {};  // a false index is reported by the checks of the mesh
+            break;
+        }
+    }
+
+    /// Whole numbers of which one is above 1 are bytes; others run from 0 to 1.
+    void finish_colours() {
+        const bool are_bytes = colours_are_whole_ && largest_colour_ > 1 && largest_colour_ <= 255;
+        for (int i = 0; i < 4; ++i) {
+            if (colours_[i].empty()) continue;
+            colours_[i].resize(vertex_count_, no_alpha);
+            if (i == 3) std::replace(colours_[3].begin(), colours_[3].end(), no_alpha, are_bytes ? 255.0 : 1.0);  // opaque
+            file_.properties.push_back({colour_names[i], VertexProperty::Kind::colour, are_bytes ? "uchar" : "double", std::move(colours_[i])});
+        }
+    }
+
+    TextScanner scan_;
+    std::size_t size_;
+    MeshFile file_;
+    bool has_texture_coordinates_ = false, has_colours_ = false, has_normals_ = false;
+    std::size_t vertex_count_ = 0, face_count_ = 0, vertices_with_extras_ = 0, faces_with_extras_ = 0;
+    std::vector<double> colours_[4];
+    bool colours_are_whole_ = true;
+    double largest_colour_ = 0;
+};
+
+class OffWriter {
+public:
+    OffWriter(const MeshFile& file, ByteSink& sink) : file_(file), out_(sink), colours_(find_colours(file)) {}
+
+    void write() {
+        if (has_texture_coordinates_) out_.text("ST");
+        if (colours_) out_.text("C");
+        if (!file_.normals.empty()) out_.text("N");
+        out_.text("OFF\n");
+        out_.number(file_.mesh.vertex_count);
+        out_.character(' ');
+        out_.number(file_.mesh.face_count());
+        out_.text(" 0\n");
+        for (Index v = 0; v < file_.mesh.vertex_count; ++v) write_vertex(static_cast<std::size_t>(v));
+        for (Index f = 0; f < file_.mesh.face_count(); ++f) write_face(f);
+        out_.flush();
+    }
+
+private:
+    void write_vertex(std::size_t vertex) {
+        write_numbers(&file_.mesh.positions[3 * vertex], 3);
+        if (!file_.normals.empty()) write_numbers(&file_.normals[3 * vertex], 3, ' ');
+        if (colours_) write_colour(vertex);
+        if (has_texture_coordinates_) write_numbers(&file_.uvs.values[2 * vertex], 2, ' ');
+        out_.character('\n');
+    }
+
+    void write_numbers(const double* values, int count, char before = 0) {
+        for (int i = 0; i < count; ++i) {
+            if (i > 0 || before != 0) out_.character(' ');
+            out_.number(values[i]);
+        }
+    }
+
+    /// Bytes as they are, other columns from 0 to 1 with a point. Where texture coordinates follow, alpha cannot be left out.
+    void write_colour(std::size_t vertex) {
+        for (const VertexProperty* column : {colours_.red, colours_.green, colours_.blue, colours_.alpha}) {
+            if (!column && !has_texture_coordinates_) continue;
+            const double unit = full_intensity(column ? *column : *colours_.red);
+            const double value = column ? column->values[vertex] : unit;
+            out_.character(' ');
+            if (unit == 255)
+                write_byte(value);
+            else
+                write_fraction(value / unit);
+        }
+    }
+
+    void write_byte(double value) { out_.number(static_cast<int>(round_to_range(value, 0, 255))); }
+
+    void write_fraction(double value) {
+        out_.number(value);
+        if (value == std::floor(value) && std::fabs(value) < 1e5) out_.text(".0");  // without its point a reader might take a 1 for a byte
+    }
+
+    void write_face(Index f) {
+        out_.number(file_.mesh.degree(f));
+        for (Index c = file_.mesh.face_offsets[f]; c < file_.mesh.face_offsets[f + 1]; ++c) {
+            out_.character(' ');
+            out_.number(file_.mesh.face_vertices[c]);
+        }
+        out_.character('\n');
+    }
+
+    const MeshFile& file_;
+    OutputBuffer out_;
+    ColourColumns colours_;
+    const bool has_texture_coordinates_ = has_vertex_texture_coordinates(file_) && file_.uvs.components == 2;
+};
+
+}  // namespace
+
+MeshFile read_off(const InputBytes& input) { return OffReader(input).read(); }
+
+void write_off(const MeshFile& file, ByteSink& sink) { OffWriter(file, sink).write(); }
+
+}  // namespace lcl

@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "host/mesh/features.h"
+
+#include <cmath>
+
+namespace lcl {
+namespace {
+
+constexpr double radians_per_degree = 0.017453292519943295;
+
+void check_vertex(const Topology& topology, Index v, const char* what) {
+    if (v >= 0 && v < topology.vertex_count) return;
+    throw BadInput(std::string(what) + " uses vertex " + std::to_string(v) + ", the mesh has " + std::to_string(topology.vertex_count) + ": correct the index",
+                   Where{{v}, {}});
+}
+
+/// The edge between a and b, -1 if there is none. Walks round the end with fewer faces: over all edges of a surface that is linear, pole or not
+/// (the sum of the smaller valences is bounded by the number of edges times the arboricity, Chiba and Nishizeki 1985).
+Index find_edge(const Topology& topology, Index a, Index b) {
+    if (topology.is_isolated(a) || topology.is_isolated(b)) return -1;
+    if (topology.vertex_face_count[a] > topology.vertex_face_count[b]) std::swap(a, b);
+    const Index start = topology.vertex_half_edge[a];
+    Index h = start;
+    do {
+        if (topology.destination(h) == b) return topology.half_edge_edge[h];
+        const Index before = topology.previous(h);
+        if (topology.origin(before) == b) return topology.half_edge_edge[before];
+        h = topology.twin[before];
+    } while (h >= 0 && h != start);
+    return -1;
+}
+
+void mark_given_creases(const Topology& topology, const std::vector<std::array<Index, 2>>& creases, Features& features) {
+    for (const auto& [a, b] : creases) {
+        check_vertex(topology, a, "a crease");
+        check_vertex(topology, b, "a crease");
+        const Index e = find_edge(topology, a, b);
+        if (e < 0)
+            throw BadInput("the crease " + std::to_string(a) + "-" + std::to_string(b) + " is no edge of the mesh: name the two ends of an edge",
+                           Where{{a, b}, {}});
+        features.edge_is_sharp[e] = 1;
+    }
+}
+
+using Vector = std::array<double, 3>;
+
+Vector newell_normal(const PolygonMesh& mesh, Index f) {
+    const auto point = [&](Index h) { return &mesh.positions[3 * static_cast<std::size_t>(mesh.face_vertices[h])]; };
+    const Index begin = mesh.face_offsets[f], end = mesh.face_offsets[f + 1];
+    const double* origin = point(begin);  // differences first: faces far from the origin of space keep their digits
+    Vector normal{0, 0, 0};
+    for (Index h = begin + 1; h + 1 < end; ++h) {
+        const double *p = point(h), *q = point(h + 1);
+        for (int c = 0; c < 3; ++c) {
+            const int i = (c + 1) % 3, j = (c + 2) % 3;
+            normal[c] += (p[i] - origin[i]) * (q[j] - origin[j]) - (p[j] - origin[j]) * (q[i] - origin[i]);
+        }
+    }
+    return normal;
+}
+
+/// Angle in radians; 0 where a normal is zero, so that faces without area make no crease.
+double angle_between(const Vector& a, const Vector& b) {
+    double dot = 0, cross = 0;
+    for (int c = 0; c < 3; ++c) {
+        const int i = (c + 1) % 3, j = (c + 2) % 3;
+        dot += a[c] * b[c];
+        cross = std::hypot(cross, a[i] * b[j] - a[j] * b[i]);
+    }
+    return std::atan2(cross, dot);
+}
+
+void mark_creases_by_angle(const PolygonMesh& mesh, const Topology& topology, double degrees, Features& features) {
+    std::vector<Vector> normals(topology.face_count);
+    for (Index f = 0; f < topology.face_count; ++f) normals[f] = newell_normal(mesh, f);
+    for (Index e = 0; e < topology.edge_count; ++e) {
+        const Index h = topology.edge_half_edge[e];
+        if (topology.twin[h] < 0) continue;
+        const double angle = angle_between(normals[topology.half_edge_face[h]], normals[topology.half_edge_face[topology.twin[h]]]);
+        if (angle > degrees * radians_per_degree) features.edge_is_sharp[e] = 1;
+    }
+}
+
+/// Visits the edges at v in face order, beginning with that of its own half-edge: visit(edge, other end).
+template <class Visit> void for_each_edge_at(const Topology& topology, Index v, Visit&& visit) {
+    const Index start = topology.vertex_half_edge[v];
+    Index h = start;
+    do {
+        visit(topology.half_edge_edge[h], topology.destination(h));
+        const Index before = topology.previous(h);
+        h = topology.twin[before];
+        if (h < 0) visit(topology.half_edge_edge[before], topology.origin(before));
+    } while (h >= 0 && h != start);
+}
+
+VertexKind kind_of(const Topology& topology, Index v, int sharp_edges, bool marked, BoundaryRule rule) {
+    if (topology.is_isolated(v)) return VertexKind::isolated;
+    if (marked || sharp_edges > 2) return VertexKind::corner;
+    if (topology.is_boundary(v)) {
+        if (rule == BoundaryRule::fixed) return VertexKind::corner;
+        if (rule == BoundaryRule::edge_and_corner && topology.vertex_face_count[v] == 1) return VertexKind::corner;
+    }
+    constexpr VertexKind by_sharp_edges[] = {VertexKind::smooth, VertexKind::dart, VertexKind::curve};
+    return by_sharp_edges[sharp_edges];
+}
+
+std::array<Index, 2> sharp_neighbours(const Topology& topology, const Features& features, Index v) {
+    std::array<Index, 2> ends{-1, -1};
+    for_each_edge_at(topology, v, [&](Index e, Index other) {
+        if (!features.edge_is_sharp[e]) return;
+        if (ends[0] < 0) ends[0] = other;
+        ends[1] = other;
+    });
+    return ends;
+}
+
+void classify_vertices(const Topology& topology, const std::vector<char>& marked, BoundaryRule rule, Features& features) {
+    std::vector<std::uint8_t> sharp_edges(topology.vertex_count, 0);  // stops at 3
+    for (Index e = 0; e < topology.edge_count; ++e) {
+        if (!features.edge_is_sharp[e]) continue;
+        const Index h = topology.edge_half_edge[e];
+        for (const Index v : {topology.origin(h), topology.destination(h)})
+            if (sharp_edges[v] < 3) ++sharp_edges[v];
+    }
+    features.kind.resize(topology.vertex_count);
+    features.curve_neighbours.assign(topology.vertex_count, {-1, -1});
+    for (Index v = 0; v < topology.vertex_count; ++v) {
+        const VertexKind kind = kind_of(topology, v, sharp_edges[v], marked[v] != 0, rule);
+        features.kind[v] = kind;
+        if (kind == VertexKind::curve || kind == VertexKind::dart) features.curve_neighbours[v] = sharp_neighbours(topology, features, v);
+        if (kind == VertexKind::corner) ++features.corner_count;
+    }
+}
+
+}  // namespace
+
+Features find_features(const PolygonMesh& mesh, const Topology& topology, const FeatureOptions& options) {
+    Features features;
+    features.edge_is_sharp.assign(topology.edge_count, 0);
+    mark_given_creases(topology, options.creases, features);
+    if (options.crease_angle_degrees >= 0) mark_creases_by_angle(mesh, topology, options.crease_angle_degrees, features);
+    for (Index e = 0; e < topology.edge_count; ++e) {
+        if (topology.is_boundary_edge(e)) features.edge_is_sharp[e] = 1;
+        else features.crease_count += features.edge_is_sharp[e];
+    }
+    std::vector<char> marked(topology.vertex_count, 0);
+    for (const Index v : options.corners) {
+        check_vertex(topology, v, "the list of corners");
+        marked[v] = 1;
+    }
+    classify_vertices(topology, marked, options.boundary, features);
+    return features;
+}
+
+}  // namespace lcl

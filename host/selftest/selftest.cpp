@@ -1,0 +1,269 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "host/selftest/selftest.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "host/solve/limit_system.h"
+
+namespace lcl {
+namespace {
+
+constexpr double pi = 3.14159265358979323846;
+
+/// A tube of quads with a bump, closed round and open at both ends: smooth rows of one valence, boundary curves; `triangles` splits every quad, a crease runs along it half way (a dart).
+PolygonMesh tube(int around, int along, bool triangles, bool polygons) {
+    PolygonMesh mesh;
+    mesh.vertex_count = around * along;
+    for (int j = 0; j < along; ++j)
+        for (int i = 0; i < around; ++i) {
+            const double angle = 2 * pi * i / around, radius = 1 + 0.2 * std::sin(3 * angle + j);
+            mesh.positions.insert(mesh.positions.end(), {radius * std::cos(angle), radius * std::sin(angle), 0.3 * j});
+        }
+    const auto add_face = [&](std::initializer_list<Index> face) {
+        mesh.face_vertices.insert(mesh.face_vertices.end(), face);
+        mesh.face_offsets.push_back(static_cast<Index>(mesh.face_vertices.size()));
+    };
+    for (int j = 0; j + 1 < along; ++j)
+        for (int i = 0; i < around; ++i) {
+            const Index a = j * around + i, b = j * around + (i + 1) % around, c = b + around, d = a + around;
+            const bool split = triangles || (polygons && (i + j) % 3 == 0);
+            if (split) add_face({a, b, c}), add_face({a, c, d});
+            else add_face({a, b, c, d});
+        }
+    return mesh;
+}
+
+struct Case {
+    std::string name;
+    PolygonMesh mesh;
+    FeatureOptions features;
+    SchemeOptions scheme;
+};
+
+std::vector<Case> cases() {
+    std::vector<Case> all;
+    all.push_back({"quads", tube(13, 9, false, false), {}, {}});
+    all.push_back({"polygons, dart", tube(11, 8, false, true), {}, {}});
+    for (int j = 2; j < 5; ++j) all.back().features.creases.push_back({j * 11, (j + 1) * 11});
+    all.back().scheme.alpha = 0.5;
+    all.push_back({"triangles", tube(12, 7, true, false), {}, {}});
+    all.back().scheme.scheme = Scheme::loop;
+    all.push_back({"Doo-Sabin", tube(9, 7, false, true), {}, {}});
+    all.back().scheme.scheme = Scheme::doo_sabin;
+    return all;
+}
+
+/// Largest difference of two lists, not a number if there is one.
+double largest_difference(const std::vector<double>& a, const std::vector<double>& b) {
+    double worst = 0;
+    for (std::size_t i = 0; i < a.size(); ++i)
+        if (!(std::fabs(a[i] - b[i]) <= worst)) worst = std::fabs(a[i] - b[i]);
+    return worst;
+}
+
+/// Values of a few channels that are of size 1 and rough.
+std::vector<double> values_for(Index rows, int channels, int seed) {
+    std::vector<double> values(static_cast<std::size_t>(rows) * channels);
+    for (std::size_t i = 0; i < values.size(); ++i) values[i] = std::sin(12.9898 * static_cast<double>(i + 1) + 78.233 * seed);
+    return values;
+}
+
+class Selftest {
+public:
+    Selftest(std::shared_ptr<Context> context, const Case& c, int channels, Real real, std::function<void(const SelftestResult&)> report)
+        : system_(make(std::move(context), c)), A_(*system_->A), plan_(A_.plan()), channels_(channels), real_(real), report_(std::move(report)) {
+        what_ = c.name + ", " + std::to_string(channels) + (channels == 1 ? " channel, " : " channels, ") + (real == Real::single ? "single" : real == Real::full ? "double" : "mixed");
+        // A row sums at most 60 products of numbers of size 1 and weights that sum to 1; pairs of floats hold 2^-48.
+        const bool pairs = real == Real::wide && !A_.context().device().has_double;
+        tolerance_ = 64 * (real == Real::single ? std::ldexp(1, -24) : pairs ? std::ldexp(1, -46) : std::ldexp(1, -52));
+    }
+
+    bool run() {
+        m_ = values_for(plan_.vertex_count, channels_, 1);
+        x_ = values_for(plan_.vertex_count, channels_, 2);
+        ax_ = host_apply(plan_, x_, channels_);
+        limit();
+        if (real_ == Real::wide) residual();
+        else sweeps(), gauss_seidel(), conjugate_gradients(), transfers();
+        return passed_;
+    }
+
+private:
+    static std::unique_ptr<LimitSystem> make(std::shared_ptr<Context> context, const Case& c) {
+        const Topology topology = build_topology(c.mesh);
+        return make_limit_system(std::move(context), c.mesh, topology, find_features(c.mesh, topology, c.features), c.scheme, {});
+    }
+
+    Field field(const std::vector<double>& values, Real real) {
+        Field field = A_.make_field(channels_, real);
+        field.upload(values.data(), 0, plan_.vertex_count);
+        return field;
+    }
+    std::vector<double> download(const Field& field) const {
+        std::vector<double> values(static_cast<std::size_t>(plan_.vertex_count) * channels_);
+        field.download(values.data(), 0, plan_.vertex_count);
+        return values;
+    }
+
+    void compare(const char* kernel, const std::vector<double>& found, const std::vector<double>& expected, double tolerance) {
+        const SelftestResult result{kernel, what_, largest_difference(found, expected), tolerance};
+        passed_ = passed_ && result.passed();
+        report_(result);
+    }
+
+    void limit() {
+        const Field x = field(x_, real_);
+        Field y = field(x_, real_);
+        A_.limit_points(x, y, plan_.all_rows());
+        compare("lcl_limit_points", download(y), ax_, tolerance_);
+    }
+
+    /// y = a x + b (m - A x) + b_jacobi (m - A x) / A_ii + c d, all terms.
+    std::vector<double> expected_sweep(const Sweep& s, const std::vector<double>& d) const {
+        std::vector<double> y(x_.size());
+        for (std::size_t i = 0; i < y.size(); ++i) {
+            const double r = m_[i] - ax_[i];
+            y[i] = s.a * x_[i] + (s.b + s.b_jacobi / plan_.diagonal[i / channels_]) * r + s.c * d[i];
+        }
+        return y;
+    }
+
+    void sweeps() {
+        const Field m = field(m_, real_), x = field(x_, real_);
+        Field y = field(x_, real_);
+        const Sweep two{0.75, 1.25, 0.5, 0}, three{0.75, 1.25, 0, -0.5};
+        A_.sweep(two, m, x, nullptr, y, plan_.all_rows());
+        compare("lcl_relax", download(y), expected_sweep(two, x_), 8 * tolerance_);
+        const double norm = A_.norms(x, plan_.all_rows()).position, expected = host_residual(plan_, m_, x_, channels_).position;
+        compare("lcl_relax (norm)", {norm}, {expected}, 4 * tolerance_);
+        const std::vector<double> d_values = values_for(plan_.vertex_count, channels_, 3);
+        y.upload(d_values.data(), 0, plan_.vertex_count);
+        A_.sweep(three, m, x, &y, y, plan_.all_rows());
+        compare("lcl_relax_three_term", download(y), expected_sweep(three, d_values), 8 * tolerance_);
+    }
+
+    void gauss_seidel() {
+        const Schedule schedule = coloured_schedule(plan_);
+        Field x = field(x_, real_);
+        A_.relax_rows(schedule, field(m_, real_), x);
+        std::vector<double> expected = x_;
+        for (std::size_t k = 0; k < schedule.rows.size(); ++k)
+            for (int c = 0; c < channels_; ++c) {
+                double r = m_[static_cast<std::size_t>(schedule.rows[k]) * channels_ + c];
+                for (std::uint32_t e = schedule.offsets[k]; e < schedule.offsets[k + 1]; ++e) r -= schedule.weights[e] * expected[static_cast<std::size_t>(schedule.columns[e]) * channels_ + c];
+                expected[static_cast<std::size_t>(schedule.rows[k]) * channels_ + c] += r * schedule.inverse_diagonal[k];
+            }
+        compare("lcl_relax_rows", download(x), expected, 32 * tolerance_);
+        A_.context().finish();
+    }
+
+    double scaled_dot(const std::vector<double>& a, const std::vector<double>& b, int channel) const {
+        double sum = 0;
+        for (Index row = plan_.smooth.first_row; row < plan_.smooth.end_row(); ++row)
+            sum += plan_.scaling[row] * a[static_cast<std::size_t>(row) * channels_ + channel] * b[static_cast<std::size_t>(row) * channels_ + channel];
+        return sum;
+    }
+
+    void conjugate_gradients() {
+        const Part part = plan_.smooth;
+        double weight = 0;  // sums are compared relative to the sum of the scaling
+        for (const double d : plan_.scaling) weight += d;
+        Field p = field(x_, real_), q = field(x_, real_), x = field(m_, real_), r = field(m_, real_);
+        ChannelValues found = A_.cg_apply(p, q, part), expected(channels_), ones(channels_, 0.5);
+        for (int c = 0; c < channels_; ++c) expected[c] = scaled_dot(x_, ax_, c) / weight, found[c] /= weight;
+        compare("lcl_cg_apply", found, expected, 4 * tolerance_);
+        found = A_.cg_update(ones, p, q, x, r, part);
+        std::vector<double> new_r = m_, new_p = x_;
+        for (Index row = part.first_row; row < part.end_row(); ++row)
+            for (int c = 0; c < channels_; ++c) {
+                const std::size_t i = static_cast<std::size_t>(row) * channels_ + c;
+                new_r[i] -= 0.5 * ax_[i];
+                new_p[i] = new_r[i] + 0.5 * x_[i];
+            }
+        for (int c = 0; c < channels_; ++c) expected[c] = scaled_dot(new_r, new_r, c) / weight, found[c] /= weight;
+        compare("lcl_cg_update", found, expected, 4 * tolerance_);
+        compare("lcl_cg_update (residual)", download(r), new_r, 4 * tolerance_);
+        A_.cg_direction(ones, r, p, part);
+        compare("lcl_cg_direction", download(p), new_p, 8 * tolerance_);
+    }
+
+    void residual() {
+        const Part all = plan_.all_rows();
+        const Field m = field(m_, Real::wide);
+        Field x = field(x_, Real::wide), r = field(m_, Real::single);
+        A_.wide_residual(m, x, r, all);
+        std::vector<double> expected(x_.size());
+        for (std::size_t i = 0; i < expected.size(); ++i) expected[i] = m_[i] - ax_[i];
+        compare("lcl_residual", download(r), expected, std::ldexp(1, -22));  // handed on in float
+        A_.correct(r, x, all);
+        const std::vector<double> handed_on = download(r);
+        for (std::size_t i = 0; i < expected.size(); ++i) expected[i] = x_[i] + handed_on[i];
+        compare("lcl_correct", download(x), expected, tolerance_);
+        A_.narrow(x, r);
+        compare("lcl_narrow_rows", download(r), expected, std::ldexp(1, -22));
+        A_.context().finish();
+    }
+
+    /// A caller's floats to rows and back.
+    void transfers() {
+        Context& context = A_.context();
+        const std::size_t rows = plan_.vertex_count;
+        std::vector<float> caller(rows * channels_), back(caller.size(), 0.0f);
+        for (std::size_t i = 0; i < caller.size(); ++i) caller[i] = static_cast<float>(m_[i]);
+        Buffer buffer(A_.shared_context(), caller.size() * sizeof(float), "a self-test buffer");
+        context.write(buffer, 0, caller.size() * sizeof(float), caller.data(), "uploading a self-test buffer");
+        Field field = A_.make_field(channels_, real_);
+        move(field, buffer, "lcl_import_points");
+        std::vector<double> expected(x_.size());
+        for (std::size_t row = 0; row < rows; ++row)
+            for (int c = 0; c < channels_; ++c) expected[row * channels_ + c] = (caller[plan_.vertex_of_row[row] * channels_ + c] - 0.25) * 2;
+        compare("lcl_import_points", download(field), expected, 4 * tolerance_);
+        context.fill_zero(buffer, "clearing a self-test buffer");
+        move(field, buffer, "lcl_export_points");
+        context.read(buffer, 0, back.size() * sizeof(float), back.data(), "reading a self-test buffer");
+        compare("lcl_export_points", {back.begin(), back.end()}, {caller.begin(), caller.end()}, 4 * std::ldexp(1, -24));
+    }
+
+    void move(Field& field, const Buffer& buffer, const char* kernel) {
+        Context& context = A_.context();
+        for (std::size_t b = 0; b < field.blocks().size(); ++b) {
+            const ChannelBlock& block = field.blocks()[b];
+            std::vector<double> frame;
+            for (const double value : {0.25, 2.0, 0.5}) frame.insert(frame.end(), block.width, value);
+            const std::vector<float> narrow(frame.begin(), frame.end());
+            const bool as_double = real_ == Real::full;
+            Buffer frame_buffer(A_.shared_context(), frame.size() * sizeof(double), "a self-test frame");
+            context.write(frame_buffer, 0, frame.size() * (as_double ? sizeof(double) : sizeof(float)), as_double ? static_cast<const void*>(frame.data()) : narrow.data(), "uploading a self-test frame");
+            launch(context, context.kernel("transfer", kernel, kernel_options(context, real_, block.width, 1) + " -D LCL_SOURCE=float"), {static_cast<std::size_t>(plan_.vertex_count), 0},
+                   static_cast<cl_uint>(plan_.vertex_count), static_cast<cl_ulong>(channels_), cl_ulong{0}, static_cast<cl_uint>(block.first), static_cast<cl_uint>(block.count),
+                   A_.vertex_order(), frame_buffer, buffer, field.buffer(b));
+            context.finish();
+        }
+    }
+
+    const std::unique_ptr<LimitSystem> system_;
+    DeviceOperator& A_;
+    const Plan& plan_;
+    const int channels_;
+    const Real real_;
+    const std::function<void(const SelftestResult&)> report_;
+    std::string what_;
+    double tolerance_ = 0;
+    bool passed_ = true;
+    std::vector<double> m_, x_, ax_;
+};
+
+}  // namespace
+
+bool run_selftest(const std::shared_ptr<Context>& context, const std::function<void(const SelftestResult&)>& report) {
+    bool passed = true;
+    for (const Case& c : cases())
+        for (const Real real : {Real::single, Real::wide, Real::full}) {
+            if (real == Real::full && !context->device().has_double) continue;
+            for (const int channels : {1, 2, 3, 9}) passed = Selftest(context, c, channels, real, report).run() && passed;
+        }
+    return passed;
+}
+
+}  // namespace lcl

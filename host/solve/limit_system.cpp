@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "host/solve/limit_system.h"
+
+namespace lcl {
+
+std::unique_ptr<LimitSystem> make_limit_system(std::shared_ptr<Context> context, const PolygonMesh& mesh, const Topology& topology, const Features& features, const SchemeOptions& scheme,
+                                               PlanOptions plan_options) {
+    const Objection objection = scheme_objection(topology, scheme);
+    if (!objection.message.empty()) throw BadInput(objection.message, {objection.vertices, objection.faces});
+    const LaunchShape shape = launch_shape(context->device());
+    plan_options.block_rows = shape.block_rows;
+    auto system = std::make_unique<LimitSystem>();
+    system->scheme = scheme;
+    system->diagonal = bounding_box_diagonal(mesh);
+    system->singular = find_singular_component(topology, features, scheme, plan_options.subset);
+    for (Index v = 0; v < topology.vertex_count && system->valence_2.size() < 10; ++v)
+        if (features.kind[v] == VertexKind::smooth && topology.vertex_face_count[v] < 3) system->valence_2.push_back(v);
+    auto plan = std::make_shared<const Plan>(build_plan(mesh, topology, features, scheme, plan_options));
+    system->A = std::make_unique<DeviceOperator>(std::move(context), std::move(plan), shape.group);
+    return system;
+}
+
+}  // namespace lcl

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A limit operator ready to be solved with: plan, device arrays, and what is found out about it and remembered.
+#pragma once
+
+#include <memory>
+#include <optional>
+
+#include "host/apply/device_operator.h"
+#include "host/operator/singular.h"
+
+namespace lcl {
+
+/// What is known of the eigenvalues.
+struct Spectrum {
+    double bound = 0;         ///< proven lower bound; NaN where none is known
+    double estimate = 0;      ///< of lambda_min, never below the bound; NaN where A is not self-adjoint (darts)
+    double smooth = 0;        ///< estimate for the smooth block alone: what Chebyshev and W-PIA are set to
+    bool singular = false, indefinite = false;
+    std::string message;      ///< one sentence with the cure; empty if all is well
+    std::vector<Index> vertices;
+};
+
+struct InverseNorm {
+    double value = 0;
+    bool proven = false;
+};
+
+struct LimitSystem {
+    SchemeOptions scheme;
+    double diagonal = 0;  ///< of the mesh's bounding box, model units
+    Objection singular;   ///< find_singular_component's
+    std::vector<Index> valence_2; ///< smooth vertices with fewer than three faces, the first ten
+    std::unique_ptr<DeviceOperator> A;
+
+    std::optional<Spectrum> spectrum;        // filled by spectrum_of
+    std::optional<InverseNorm> inverse_norm; // filled by inverse_norm_of
+    std::optional<Schedule> natural, coloured;
+
+    const Plan& plan() const { return A->plan(); }
+};
+
+/// Builds everything. BadInput where the scheme does not fit the mesh.
+std::unique_ptr<LimitSystem> make_limit_system(std::shared_ptr<Context> context, const PolygonMesh& mesh, const Topology& topology, const Features& features, const SchemeOptions& scheme,
+                                               PlanOptions plan_options);
+
+/// Bounds and estimates lambda_min by a short Lanczos run on the device: some 20 passes at the first call.
+const Spectrum& spectrum_of(LimitSystem& system);
+
+/// |A^-1|_inf of the smooth block: 1/min(2 a_ii - 1) where its rows are diagonally dominant, else the block Hager-Higham estimate (Higham & Tisseur 2000), some ten short solves.
+/// Unsupported with darts.
+const InverseNorm& inverse_norm_of(LimitSystem& system);
+
+}  // namespace lcl

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "host/solve/monitor.h"
+
+#include <cmath>
+
+namespace lcl {
+namespace {
+
+constexpr double growth_limit = 10;    // times the stage's first residual: no convergent iteration on these operators grows so far, non-normal ones (darts) included
+constexpr int patience = 30;           // iterations without ...
+constexpr double least_progress = 0.99;  // ... this factor on the best residual are a stall
+
+}  // namespace
+
+void Monitor::begin_stage(Target target, int limit) {
+    stage_ = target;
+    limit_ = limit < 0 ? max_iterations_ : std::min(limit, max_iterations_);
+    first_ = best_ = -1;
+    best_iteration_ = iteration_;
+}
+
+void Monitor::replace_last(const ResidualNorms& residual) {
+    if (history_.empty()) history_.push_back(residual.position);
+    history_.back() = residual.position;
+}
+
+bool Monitor::has_stalled(double size) {
+    if (best_ < 0 || size < least_progress * best_) {
+        best_ = size;
+        best_iteration_ = iteration_;
+    }
+    return iteration_ - best_iteration_ >= patience;
+}
+
+bool Monitor::stop(const ResidualNorms& residual) {
+    history_.resize(iteration_ + 1);
+    history_.back() = residual.position;
+    const double size = residual.position + residual.others;
+    if (first_ < 0) first_ = size;
+    if (progress_ && !progress_(iteration_, residual.position, target_.position)) throw Cancelled("the solve was cancelled after " + std::to_string(iteration_) + " iterations");
+    const auto end = [&](Outcome outcome) { outcome_ = outcome; return true; };
+    if (stage_.met_by(residual)) return end(Outcome::converged);
+    if (!std::isfinite(size) || size > growth_limit * first_) return end(Outcome::diverged);
+    if (iteration_ >= limit_) return end(Outcome::exhausted);
+    return has_stalled(size) && end(Outcome::stalled);
+}
+
+}  // namespace lcl

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// When an iteration stops: tolerance, limit, stall, divergence, cancel. Keeps the history of residuals.
+#pragma once
+
+#include <functional>
+#include <vector>
+
+#include "host/apply/host_operator.h"
+
+namespace lcl {
+
+enum class Outcome {
+    converged,
+    exhausted,   ///< as many iterations as were allowed
+    stalled,     ///< the residual no longer falls: the precision's end, or a slow operator
+    diverged,    ///< the residual grows
+    indefinite,  ///< a direction of negative curvature was met: proof of a negative eigenvalue
+};
+
+/// Largest row norms that are small enough, in the fields' normalised units. Below 0: none is.
+struct Target {
+    double position = -1, others = -1;
+    bool met_by(const ResidualNorms& e) const { return e.position <= position && e.others <= others; }
+};
+
+class Monitor {
+public:
+    /// progress(iteration, residual, target) returns false to cancel (throws Cancelled); may be empty.
+    Monitor(int max_iterations, Target target, std::function<bool(int, double, double)> progress)
+        : max_iterations_(max_iterations), target_(target), progress_(std::move(progress)) {}
+
+    /// Starts a stage that ends when `target` is met or after `limit` iterations in all (below 0: the monitor's own).
+    void begin_stage(Target target, int limit = -1);
+    /// Takes the residual of the iterate after iteration() iterations; true if the stage is over, and outcome() says why.
+    bool stop(const ResidualNorms& residual);
+    /// One more iteration was made.
+    void advance() { ++iteration_; }
+
+    int iteration() const { return iteration_; }
+    int max_iterations() const { return max_iterations_; }
+    Outcome outcome() const { return outcome_; }
+    void set_outcome(Outcome outcome) { outcome_ = outcome; }
+    const Target& target() const { return target_; }
+    /// E_0 .. E_iteration, normalised.
+    const std::vector<double>& history() const { return history_; }
+    /// Replaces the last entry by a residual that is known better.
+    void replace_last(const ResidualNorms& residual);
+
+private:
+    bool has_stalled(double size);
+
+    int max_iterations_, limit_ = 0, iteration_ = 0;
+    Target target_, stage_;
+    std::function<bool(int, double, double)> progress_;
+    Outcome outcome_ = Outcome::exhausted;
+    std::vector<double> history_;
+    double first_ = -1, best_ = -1;
+    int best_iteration_ = 0;
+};
+
+}  // namespace lcl

@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "host/solve/recurrences.h"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace lcl {
+
+// y = x + w (m - A x), or + (m - A x) / A_ii
+void iterate_stationary(DeviceOperator& A, const Part& part, double weight, bool jacobi, const Field& m, Field& x, Monitor& monitor) {
+    const Sweep sweep = jacobi ? Sweep{1, 0, 1, 0} : Sweep{1, weight, 0, 0};
+    Field y = A.make_field(x.channels(), x.real());
+    y.copy_from(x);  // rows outside the part
+    for (;; monitor.advance(), std::swap(x, y)) {
+        A.sweep(sweep, m, x, nullptr, y, part);
+        if (monitor.stop(A.norms(x, part))) return;
+    }
+}
+
+void iterate_gauss_seidel(DeviceOperator& A, const Schedule& schedule, const Field& m, Field& x, Monitor& monitor) {
+    const Part all = A.plan().all_rows();
+    Field residual = A.make_field(x.channels(), x.real());
+    for (;; monitor.advance()) {
+        A.sweep({0, 1, 0, 0}, m, x, nullptr, residual, all);
+        if (monitor.stop(A.norms(x, all))) return;
+        A.relax_rows(schedule, m, x);
+    }
+}
+
+// x_1 = x_0 + r_0 / theta; x_(k+1) = x_k + rho_k rho_(k-1) (x_k - x_(k-1)) + 2 rho_k / delta r_k, rho_k = 1 / (2 theta / delta - rho_(k-1)), rho_0 = delta / theta
+void iterate_chebyshev(DeviceOperator& A, const Part& part, double low, const Field& m, Field& x, Monitor& monitor) {
+    const double theta = (1 + low) / 2, delta = std::max((1 - low) / 2, 1e-12);
+    double rho = delta / theta;
+    Field y = A.make_field(x.channels(), x.real());
+    y.copy_from(x);
+    A.sweep({1, 1 / theta, 0, 0}, m, x, nullptr, y, part);
+    if (monitor.stop(A.norms(x, part))) return;
+    for (;;) {
+        std::swap(x, y);  // x: x_k, y: x_(k-1), which the next sweep overwrites
+        monitor.advance();
+        const double before = rho;
+        rho = 1 / (2 * theta / delta - before);
+        // The residual of x_k comes with the sweep to x_(k+1): when it is small enough, x_k is the answer and still there.
+        A.sweep({1 + rho * before, 2 * rho / delta, 0, -rho * before}, m, x, &y, y, part);
+        if (monitor.stop(A.norms(x, part))) return;
+    }
+}
+
+void iterate_conjugate_gradients(DeviceOperator& A, const Part& part, const Field& m, Field& x, Monitor& monitor, LanczosCoefficients* coefficients) {
+    const int channels = x.channels();
+    Field r = A.make_field(channels, x.real()), p = A.make_field(channels, x.real()), q = A.make_field(channels, x.real());
+    for (Field* field : {&r, &p, &q}) field->fill_zero();  // rows outside the part stay zero
+    A.sweep({0, 1, 0, 0}, m, x, nullptr, r, part);
+    if (monitor.stop(A.norms(x, part))) return;
+    ChannelValues alpha(channels, 0.0), beta(channels, 0.0);
+    ChannelValues rr = A.cg_update(alpha, p, q, x, r, part);  // alpha = 0: only <r, r>_D
+    for (;;) {
+        A.cg_direction(beta, r, p, part);
+        const ChannelValues pq = A.cg_apply(p, q, part);
+        for (int c = 0; c < channels; ++c) {
+            const bool negative = rr[c] > 0 && !(pq[c] > 0);
+            if (negative && (coefficients == nullptr || pq[c] == 0)) return monitor.set_outcome(Outcome::indefinite);
+            alpha[c] = rr[c] > 0 ? rr[c] / pq[c] : 0.0;
+        }
+        const ChannelValues rr_next = A.cg_update(alpha, p, q, x, r, part);
+        for (int c = 0; c < channels; ++c) beta[c] = rr[c] > 0 ? rr_next[c] / rr[c] : 0.0;
+        if (coefficients != nullptr) coefficients->alpha.push_back(alpha), coefficients->beta.push_back(beta);
+        rr = rr_next;
+        monitor.advance();
+        if (monitor.stop(A.norms(x, part))) return;
+    }
+}
+
+// T_kk = 1/alpha_k + beta_(k-1)/alpha_(k-1), T_k,k+1 = sqrt(beta_k)/alpha_k
+double smallest_ritz_value(const LanczosCoefficients& coefficients) {
+    double smallest = std::numeric_limits<double>::infinity();
+    const std::size_t channels = coefficients.alpha.empty() ? 0 : coefficients.alpha[0].size();
+    for (std::size_t c = 0; c < channels; ++c) {
+        std::vector<double> diagonal, off;
+        for (std::size_t k = 0; k < coefficients.alpha.size() && coefficients.alpha[k][c] != 0; ++k) {
+            diagonal.push_back(1 / coefficients.alpha[k][c] + (k > 0 ? coefficients.beta[k - 1][c] / coefficients.alpha[k - 1][c] : 0.0));
+            off.push_back(std::sqrt(std::max(0.0, coefficients.beta[k][c])) / coefficients.alpha[k][c]);
+        }
+        if (diagonal.empty()) continue;
+        off.pop_back();
+        Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver;
+        solver.computeFromTridiagonal(Eigen::Map<Eigen::VectorXd>(diagonal.data(), diagonal.size()), Eigen::Map<Eigen::VectorXd>(off.data(), off.size()), Eigen::EigenvaluesOnly);
+        smallest = std::min(smallest, solver.eigenvalues()(0));
+    }
+    return smallest;
+}
+
+}  // namespace lcl

@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "host/solve/limit_system.h"
+#include "host/solve/recurrences.h"
+
+namespace lcl {
+namespace {
+
+constexpr int lanczos_steps = 16;
+constexpr int lanczos_steps_unproven = 48;  // valence 2: negative eigenvalues are looked for
+constexpr double rounding = 2e-5;           // of a Ritz value from float sweeps
+
+/// Numbers in [-1, 1) that are the same in every run: a start vector with a part of every eigenvector.
+std::vector<double> rough_vector(std::size_t size) {
+    std::vector<double> values(size);
+    std::uint64_t state = 0x9E3779B97F4A7C15u;
+    for (double& value : values) {
+        state ^= state << 13, state ^= state >> 7, state ^= state << 17;
+        value = static_cast<double>(state >> 11) / 4503599627370496.0 - 1;
+    }
+    return values;
+}
+
+/// Lowest Ritz value of the smooth block; 1 where it is empty.
+double lanczos_estimate(DeviceOperator& A, int steps) {
+    const Plan& plan = A.plan();
+    if (plan.smooth.row_count == 0) return 1;
+    constexpr int channels = 3;  // three start vectors at the price of one
+    Field m = A.make_field(channels, Real::single), x = A.make_field(channels, Real::single);
+    m.fill_zero();
+    x.fill_zero();
+    m.upload(rough_vector(static_cast<std::size_t>(plan.smooth.row_count) * channels).data(), plan.smooth.first_row, plan.smooth.row_count);
+    Monitor monitor(steps, {}, {});
+    monitor.begin_stage({1e-5, 1e-5});  // beyond, small meshes have nothing left but rounding
+    LanczosCoefficients coefficients;
+    iterate_conjugate_gradients(A, plan.smooth, m, x, monitor, &coefficients);
+    return std::min(1.0, smallest_ritz_value(coefficients));
+}
+
+/// Curve rows (L + 4 V + R)/6 have spectrum in [1/3, 1], Doo-Sabin's (L + 6 V + R)/8 in [1/2, 1].
+double curve_bound(const LimitSystem& system) {
+    if (system.plan().curves.row_count == 0) return 1;
+    const double plain = system.scheme.scheme == Scheme::doo_sabin ? 0.5 : 1.0 / 3;
+    return system.scheme.lambda_per_vertex.empty() ? system.scheme.lambda + (1 - system.scheme.lambda) * plain : plain;
+}
+
+const char* cure(Scheme scheme) {
+    return scheme == Scheme::catmull_clark ? "use a larger alpha (0.5; alpha auto does so) or a lambda above 0" : "use another scheme, or remove vertices of valence 2";
+}
+
+void judge(const LimitSystem& system, Spectrum& spectrum) {
+    if (!system.singular.message.empty()) {
+        spectrum.singular = true;
+        spectrum.message = system.singular.message;
+        spectrum.vertices = system.singular.vertices;
+        spectrum.estimate = spectrum.smooth = 0;
+        return;
+    }
+    if (spectrum.smooth > rounding) return;
+    spectrum.indefinite = spectrum.smooth < -rounding;
+    spectrum.singular = !spectrum.indefinite;
+    spectrum.vertices = system.valence_2;
+    const std::string value = std::to_string(spectrum.smooth);
+    const std::string where = system.valence_2.empty() ? "" : " (vertex " + std::to_string(system.valence_2[0]) + " has valence 2)";
+    spectrum.message = spectrum.indefinite ? "the limit operator is indefinite, it has the eigenvalue " + value + where + ", and no iteration is sure to converge: " + cure(system.scheme.scheme)
+                                           : "the limit operator is singular to working precision, its smallest eigenvalue is about " + value + where + ": " + cure(system.scheme.scheme);
+}
+
+}  // namespace
+
+const Spectrum& spectrum_of(LimitSystem& system) {
+    if (system.spectrum) return *system.spectrum;
+    constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+    const Plan& plan = system.plan();
+    Spectrum spectrum;
+    const bool proven = !std::isnan(plan.lambda_min_bound);
+    const double curves = curve_bound(system);
+    spectrum.bound = plan.has_darts() || !proven ? nan : std::min(plan.lambda_min_bound, curves);
+    if (system.singular.message.empty()) {
+        spectrum.smooth = lanczos_estimate(*system.A, proven ? lanczos_steps : lanczos_steps_unproven);
+        if (proven) spectrum.smooth = std::max(spectrum.smooth, plan.lambda_min_bound);
+    }
+    spectrum.estimate = plan.has_darts() ? nan : std::min(spectrum.smooth, curves);
+    judge(system, spectrum);
+    system.spectrum = spectrum;
+    return *system.spectrum;
+}
+
+}  // namespace lcl

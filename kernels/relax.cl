@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// One fused sweep, y = a x + (b + b_jacobi / A_ii) (m - A x) + c d, with the largest squared row norm of m - A x: PIA (a = b = 1; mesh expansion paper), W-PIA (b = w; Loop PIA paper),
+// Jacobi (b_jacobi = 1; two-phase paper, eq. 6), Chebyshev in three terms (d = the field before x), residual (a = 0, b = 1).
+//
+// One work-group owns one block of rows and writes one norm; x and y differ, so a sweep never reads what it writes. d may be y: each row of d is read before that row of y is written.
+// A float sweep leaves a residual of some 1e-7 of the field's size.
+#include "reduce.cl.h"
+#include "rows.cl.h"
+
+#define LCL_RELAX_PLUS(row, ax, own, third_term)                                            \
+    {                                                                                       \
+        const realn residual = m[row] - (ax);                                               \
+        const real square = dot(residual, residual);                                        \
+        worst = LCL_LARGER(worst, square);                                                  \
+        y[row] = a * x[row] + (b + b_jacobi * lcl_inverse(own)) * residual third_term;      \
+    }
+#define LCL_RELAX(row, ax, own) LCL_RELAX_PLUS(row, ax, own, )
+#define LCL_RELAX_THREE_TERM(row, ax, own) LCL_RELAX_PLUS(row, ax, own, +c * d[row])
+
+/// first_block: block of work-group 0. m, x: n x LCL_WIDTH, read. y: the same shape, rows of the blocks written. norms: largest squared row norm of each block, at the block's number.
+__kernel __attribute__((reqd_work_group_size(LCL_GROUP, 1, 1))) void lcl_relax(const int first_block, LCL_STENCILS, const real a, const real b, const real b_jacobi,
+                                                                              const __global realn *restrict m, const __global realn *restrict x,
+                                                                              __global realn *restrict y, __global real *restrict norms) {
+    LCL_SCRATCH(real, scratch)
+    const int lane = get_local_id(0);
+    const lcl_block block = blocks[first_block + get_group_id(0)];
+    real worst = 0;
+    LCL_FOR_EACH_ROW(block, x, LCL_RELAX)
+    LCL_GROUP_STORE_MAX(worst, scratch, norms, first_block + get_group_id(0));
+}
+
+/// The same with + c d; d: n x LCL_WIDTH, read; it may be y.
+__kernel __attribute__((reqd_work_group_size(LCL_GROUP, 1, 1))) void lcl_relax_three_term(const int first_block, LCL_STENCILS, const real a, const real b, const real b_jacobi, const real c,
+                                                                                         const __global realn *restrict m, const __global realn *restrict x,
+                                                                                         const __global realn *d, __global realn *y, __global real *restrict norms) {
+    LCL_SCRATCH(real, scratch)
+    const int lane = get_local_id(0);
+    const lcl_block block = blocks[first_block + get_group_id(0)];
+    real worst = 0;
+    LCL_FOR_EACH_ROW(block, x, LCL_RELAX_THREE_TERM)
+    LCL_GROUP_STORE_MAX(worst, scratch, norms, first_block + get_group_id(0));
+}

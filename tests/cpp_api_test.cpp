@@ -1,0 +1,312 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The C++ headers: ownership, errors, and that every call reaches the C API with the right arguments.
+#include <catch2/catch.hpp>
+
+#include <limitcl/limitcl.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <fstream>
+#include <type_traits>
+
+using namespace limitcl;
+
+namespace {
+
+const std::vector<double> octahedron_points{1, 0, 0, -1, 0, 0, 0, 1, 0, 0, -1, 0, 0, 0, 1, 0, 0, -1};
+const std::vector<std::int32_t> octahedron_faces{0, 2, 4, 2, 1, 4, 1, 3, 4, 3, 0, 4, 2, 0, 5, 1, 2, 5, 3, 1, 5, 0, 3, 5};
+const std::vector<double> cube_points{0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0, 0, 0, 1, 1, 0, 1, 1, 1, 1, 0, 1, 1};
+const std::vector<std::int32_t> cube_faces{0, 3, 2, 1, 4, 5, 6, 7, 0, 1, 5, 4, 1, 2, 6, 5, 2, 3, 7, 6, 3, 0, 4, 7};
+
+constexpr double loop_alpha_4 = 24.0 / 55.0;    // 3 / (11 - 8 (3/8 + (3/8)^2)): A of the octahedron is this times the identity
+constexpr double octahedron_inverse = 1 / 0.15; // above |A^-1|, from the lower bound of the spectrum for valence 4
+constexpr double octahedron_diagonal = 3.4641016;
+
+Mesh octahedron() { return Mesh::from_uniform_faces(octahedron_points, 3, octahedron_faces); }
+Mesh cube() { return Mesh::from_uniform_faces(cube_points, 4, cube_faces); }
+
+double largest_difference(const std::vector<double>& a, const std::vector<double>& b)
+{
+    REQUIRE(a.size() == b.size());
+    double largest = 0;
+    for (std::size_t i = 0; i < a.size(); ++i)
+        largest = std::max(largest, std::abs(a[i] - b[i]));
+    return largest;
+}
+
+std::vector<double> scaled(std::vector<double> values, double factor)
+{
+    for (double& value : values)
+        value *= factor;
+    return values;
+}
+
+template <class Action>
+lcl_status status_of(Action action)
+{
+    try {
+        action();
+    } catch (const Error& error) {
+        CHECK(std::string(error.what()).size() > 10);
+        return error.status();
+    }
+    return LCL_OK;
+}
+
+} // namespace
+
+TEST_CASE("handles of the C++ API are shared by copies and empty after a move", "[cpp]")
+{
+    static_assert(std::is_nothrow_move_constructible<Mesh>::value, "meshes can be moved");
+    Mesh mesh = octahedron();
+    const Mesh shared = mesh;
+    CHECK(shared.get() == mesh.get());
+    const Mesh moved = std::move(mesh);
+    CHECK(moved.vertex_count() == 6);
+    mesh = moved;
+    CHECK(mesh.get() == moved.get());
+    const Mesh own = moved.copy();
+    CHECK(own.get() != moved.get());
+    CHECK(own.points() == octahedron_points);
+}
+
+TEST_CASE("a mesh from arrays gives them back", "[cpp][mesh]")
+{
+    const std::vector<double> points{0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0, 2, 0.5, 0};
+    const std::vector<std::int32_t> degrees{4, 3}, vertices{0, 1, 2, 3, 1, 4, 2};
+    Mesh mesh = Mesh::from_faces(points, degrees, vertices);
+    CHECK(mesh.vertex_count() == 5);
+    CHECK(mesh.face_count() == 2);
+    CHECK(mesh.corner_count() == 7);
+    CHECK(mesh.face_degrees() == degrees);
+    CHECK(mesh.face_vertices() == vertices);
+    CHECK(mesh.points() == points);
+    CHECK(mesh.face_degree_counts() == std::map<int, int>{{3, 1}, {4, 1}});
+    CHECK(mesh.valence_counts() == std::map<int, int>{{2, 3}, {3, 2}});
+    const MeshInfo info = mesh.info();
+    CHECK(info.edges == 6);
+    CHECK(info.boundary_edges == 5);
+    CHECK(info.boundary_loops == 1);
+    CHECK(info.components == 1);
+    CHECK(info.diagonal == Approx(std::sqrt(5.0)));
+    CHECK(mesh.defects().empty());
+
+    SECTION("rows may be floats and longer than a point")
+    {
+        const std::vector<float> wide{0, 0, 0, 9, 1, 0, 0, 9, 1, 1, 0, 9};
+        CHECK(Mesh::from_uniform_faces(PointView(wide.data(), 3, 4), 3, {std::vector<std::int32_t>{0, 1, 2}}).points() ==
+              std::vector<double>{0, 0, 0, 1, 0, 0, 1, 1, 0});
+    }
+    SECTION("points can be replaced")
+    {
+        mesh.set_points(scaled(points, 2));
+        CHECK(mesh.points() == scaled(points, 2));
+        CHECK(status_of([&] { mesh.set_points(octahedron_points); }) == LCL_ERROR_INVALID_ARGUMENT);
+    }
+    SECTION("properties can be added, replaced and read by name")
+    {
+        mesh.set_property("temperature", {std::vector<double>{1, 2, 3, 4, 5}});
+        mesh.set_property("temperature", {std::vector<double>{5, 4, 3, 2, 1}});
+        CHECK(mesh.property_names() == std::vector<std::string>{"temperature"});
+        CHECK(mesh.property("temperature") == std::vector<double>{5, 4, 3, 2, 1});
+        CHECK(status_of([&] { mesh.property("pressure"); }) == LCL_ERROR_INVALID_ARGUMENT);
+    }
+}
+
+TEST_CASE("sharp features come back resolved", "[cpp][features]")
+{
+    Mesh mesh = cube();
+    Features features;
+    features.creases = {0, 1, 1, 2};
+    features.corners = {6};
+    mesh.add_features(features);
+    const Features found = mesh.features();
+    CHECK(found.creases.size() == 4);
+    CHECK(found.corners == std::vector<std::int32_t>{6});
+    CHECK(mesh.info().creases == 2);
+    features.creases = {0, 1, 2};
+    CHECK(status_of([&] { mesh.add_features(features); }) == LCL_ERROR_INVALID_ARGUMENT);
+}
+
+TEST_CASE("sizes that do not fit are refused before the C API sees them", "[cpp]")
+{
+    CHECK(status_of([] { Mesh::from_uniform_faces(std::vector<double>(7), 3, octahedron_faces); }) == LCL_ERROR_INVALID_ARGUMENT);
+    CHECK(status_of([] { Mesh::from_uniform_faces(octahedron_points, 5, octahedron_faces); }) == LCL_ERROR_INVALID_ARGUMENT);
+    CHECK(status_of([] { Mesh::from_faces(octahedron_points, {std::vector<std::int32_t>{3, 3}}, octahedron_faces); }) == LCL_ERROR_INVALID_ARGUMENT);
+    const LimitOperator A(Context(), octahedron());
+    CHECK(status_of([&] { A.limit_points({std::vector<double>(17)}); }) == LCL_ERROR_INVALID_ARGUMENT);
+    CHECK(status_of([&] { (void)interpolate(A, octahedron_points, 4); }) == LCL_ERROR_INVALID_ARGUMENT);
+    CHECK(status_of([&] { Field(A).upload(std::vector<double>(17)); }) == LCL_ERROR_INVALID_ARGUMENT);
+}
+
+TEST_CASE("an Error has the sentence, the status and the places", "[cpp][error]")
+{
+    const Mesh mesh = Mesh::from_uniform_faces(octahedron_points, 3, {std::vector<std::int32_t>{0, 1, 2, 0, 3, 1, 0, 1, 4}});
+    try {
+        mesh.validate();
+        FAIL("an edge with three faces was accepted");
+    } catch (const Error& error) {
+        CHECK(error.status() == LCL_ERROR_BAD_INPUT);
+        CHECK(std::string(error.status_name()) == "LCL_ERROR_BAD_INPUT");
+        CHECK_FALSE(error.vertices().empty());
+    }
+    const std::vector<Defect> defects = mesh.defects();
+    REQUIRE_FALSE(defects.empty());
+    CHECK(defects[0].count >= 1);
+    CHECK(status_of([] { read_mesh("there-is-no-such-file.off"); }) == LCL_ERROR_FILE);
+    CHECK(status_of([] { ContextOptions options; options.device = "no device has this name"; Context{options}; }) == LCL_ERROR_NO_DEVICE);
+}
+
+TEST_CASE("the octahedron is interpolated through arrays, a mesh, fields and a task", "[cpp][solve]")
+{
+    const Context context;
+    const LimitOperator A(context, octahedron());
+    CHECK(A.vertex_count() == 6);
+    CHECK(A.row_count() == 6);
+    CHECK(A.scheme().scheme == Scheme::loop);
+    const std::vector<double> expected = scaled(octahedron_points, 1 / loop_alpha_4);
+    SolveOptions options;
+    options.tolerance = 1e-9;
+    const double tolerance = options.tolerance * octahedron_diagonal * octahedron_inverse;
+
+    SECTION("arrays")
+    {
+        const auto [P, report] = interpolate(A, octahedron_points, 3, options);
+        CHECK(report.status == LCL_OK);
+        CHECK(report.converged);
+        CHECK(report.message.empty());
+        CHECK(report.residuals.size() == static_cast<std::size_t>(report.iterations) + 1);
+        CHECK(report.max_error <= options.tolerance * octahedron_diagonal);
+        CHECK(largest_difference(P, expected) <= tolerance);
+        CHECK(largest_difference(A.limit_points(P), octahedron_points) <= 5 * 2.3 * 1.2e-7); // floats, rows of five entries up to 55/24
+    }
+    SECTION("a mesh")
+    {
+        Mesh mesh = octahedron();
+        interpolate(A, mesh, options).require_ok();
+        CHECK(largest_difference(mesh.points(), expected) <= tolerance);
+    }
+    SECTION("fields")
+    {
+        options.tolerance = 1e-5; // fields of floats
+        Field M(A), P(A);
+        M.upload(octahedron_points);
+        interpolate(A, M, P, options).require_ok();
+        CHECK(largest_difference(P.download(), expected) <= 2e-5 * octahedron_diagonal * octahedron_inverse);
+        CHECK(largest_difference(P.read_vertices({std::vector<std::int32_t>{4}}), {0, 0, 1 / loop_alpha_4}) <= 2e-5 * octahedron_diagonal * octahedron_inverse);
+    }
+    SECTION("a task")
+    {
+        std::vector<double> P(18);
+        SolveTask first(A, octahedron_points, 3, P.data(), options);
+        SolveTask task = std::move(first);
+        task.wait().require_ok();
+        CHECK(task.is_done());
+        CHECK(largest_difference(P, expected) <= tolerance);
+    }
+    SECTION("a warm start from the answer takes no iteration")
+    {
+        std::vector<double> P = expected;
+        options.warm_start = true;
+        CHECK(interpolate(A, octahedron_points, 3, P.data(), options).iterations == 0);
+        CHECK(status_of([&] { (void)interpolate(A, octahedron_points, 3, options); }) == LCL_ERROR_INVALID_ARGUMENT);
+    }
+}
+
+TEST_CASE("apply and step are the limit operator and a PIA sweep", "[cpp][field]")
+{
+    const Context context;
+    const LimitOperator A(context, octahedron());
+    Field M(A), P(A), y(A);
+    M.upload(octahedron_points);
+    P.match(M);
+    y.match(M);
+    P.upload(octahedron_points);
+    apply(A, P, y);
+    context.finish();
+    CHECK(largest_difference(y.download(), scaled(octahedron_points, loop_alpha_4)) <= 6e-7);
+    CHECK(step(A, 1, 1, M, P, y) == Approx(1 - loop_alpha_4).epsilon(1e-6));
+    CHECK(largest_difference(y.download(), scaled(octahedron_points, 2 - loop_alpha_4)) <= 1.2e-6);
+
+    const auto row = A.row(0);
+    REQUIRE(row.size() == 5);
+    CHECK(row[0].first == 0);
+    CHECK(row[0].second == Approx(loop_alpha_4).epsilon(1e-14));
+    CHECK(row[4].first == 5);
+    CHECK(row[4].second == Approx((1 - loop_alpha_4) / 4).epsilon(1e-14));
+    CHECK(A.block_count() >= 1);
+    const InverseNorm inverse = A.inverse_norm();
+    CHECK(inverse.norm >= 1 / loop_alpha_4 * (1 - 1e-6)); // the octahedron itself is amplified by 55/24
+}
+
+TEST_CASE("singular is a result that can be made an exception", "[cpp][solve]")
+{
+    const Context context;
+    const LimitOperator A(context, cube());
+    CHECK(A.diagnose().singular);
+    const Interpolation result = interpolate(A, cube_points);
+    CHECK(result.report.status == LCL_ERROR_SINGULAR);
+    CHECK_FALSE(result.report.message.empty());
+    CHECK(status_of([&] { result.report.require_ok(); }) == LCL_ERROR_SINGULAR);
+    CHECK(check_scheme(cube()).singular);
+
+    SchemeOptions scheme;
+    scheme.alpha_auto = true;
+    const LimitOperator cured(context, cube(), scheme);
+    CHECK(cured.scheme().alpha == 0.5);
+    CHECK(interpolate(cured, cube_points).report.converged);
+}
+
+TEST_CASE("a progress callback may cancel, and what it throws arrives", "[cpp][solve]")
+{
+    const LimitOperator A(Context(), octahedron());
+    SolveOptions options;
+    options.solver = Solver::pia;
+    std::vector<int> iterations;
+    options.progress = [&](int iteration, double, double) { iterations.push_back(iteration); return iteration < 2; };
+    CHECK(status_of([&] { (void)interpolate(A, octahedron_points, 3, options); }) == LCL_ERROR_CANCELLED);
+    CHECK(iterations.back() == 2);
+    options.progress = [](int, double, double) -> bool { throw std::length_error("from the callback"); };
+    CHECK_THROWS_AS((void)interpolate(A, octahedron_points, 3, options), std::length_error);
+}
+
+TEST_CASE("log messages reach a function of the caller", "[cpp][device]")
+{
+    std::vector<std::string> messages;
+    ContextOptions options;
+    options.log = [&](LogLevel, const std::string& message) { messages.push_back(message); };
+    options.log_level = LogLevel::debug;
+    const LimitOperator A(Context(options), octahedron()); // the context lives on in the operator, and so must the function
+    interpolate(A, octahedron_points).report.require_ok();
+    CHECK_FALSE(messages.empty());
+    CHECK(devices().size() >= 1);
+    CHECK_FALSE(A.context().device().name.empty());
+}
+
+TEST_CASE("refined vertices keep their numbers and know their places", "[cpp][refine]")
+{
+    const Mesh refined = refine(cube(), 1);
+    CHECK(refined.vertex_count() == 26);
+    CHECK(refined.face_count() == 24);
+    const std::vector<double> points = refined.points();
+    CHECK(std::abs(points[0] - 2.0 / 9) <= 1e-15); // (Q + 2R + 0 S)/3 at valence 3: Q = (1/2 + 1/2 + 0)/3, R = (1/2)/3 in each coordinate
+    const Locations places = locations(refined);
+    CHECK(places.faces.size() == 26);
+    CHECK(places.uv.size() == 52);
+    CHECK(refine(cube(), 0).points() == cube_points);
+    CHECK(status_of([] { refine(cube(), -1); }) == LCL_ERROR_INVALID_ARGUMENT);
+}
+
+TEST_CASE("a mesh goes through a file and through memory", "[cpp][io]")
+{
+    const std::string path = "cpp_api_test.off";
+    write_mesh(octahedron(), path);
+    CHECK(read_mesh(path).points() == octahedron_points);
+    std::ifstream file(path, std::ios::binary);
+    const std::string bytes((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
+    CHECK(read_mesh(bytes.data(), bytes.size(), Format::off).face_vertices() == octahedron_faces);
+    CHECK(format_of_path("a/b.PLY.gz") == Format::ply);
+    CHECK(status_of([] { format_of_path("a.xyz"); }) == LCL_ERROR_INVALID_ARGUMENT);
+    std::remove(path.c_str());
+}
