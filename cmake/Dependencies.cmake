@@ -21,6 +21,3 @@ if(LIMITCL_BUILD_TESTS)
     limitcl_require(Catch2 catch2 2.13 CONFIG)  # 2.x: the test sources include <catch2/catch.hpp>
     limitcl_require(tinyobjloader libtinyobjloader-dev CONFIG)
 endif()
-if(LIMITCL_BUILD_BENCH)
-    find_package(OpenSubdiv CONFIG QUIET)  # optional (libosd-dev): the comparison with its limit points
-endif()

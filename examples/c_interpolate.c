@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* C99: a torus of quads straight from memory, its control points, and a check that the limit surface passes through every vertex. No file is read or written. */
+/* C99: a torus of quads straight from memory, its control points, and a check that the limit surface passes through every vertex. No file is used. */
 #include <limitcl/limitcl.h>
 
 #include <math.h>

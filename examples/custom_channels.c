@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* C99: seven channels a vertex: x, y, z, a temperature and a colour. All are interpolated together: the limit surface meets the positions, and the values that the
-   scheme spreads over it meet temperature and colour at every vertex. */
+/* C99: seven channels a vertex: x, y, z, a temperature and a colour. All are interpolated together: the limit surface meets the positions, and the values that
+   the scheme spreads over it meet temperature and colour at every vertex. */
 #include <limitcl/limitcl.h>
 
 #include <math.h>

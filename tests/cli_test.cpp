@@ -588,7 +588,8 @@ TEST_CASE("info answers for every file that can be parsed", "[cli][info]") {
     const Outcome broken = run(folder, "info broken.obj --report -");
     CHECK(broken.exit_code == 0);
     std::vector<std::string> kinds;
-    for (const json& defect : report_of(broken).at("defects")) kinds.push_back(defect.at("kind"));
+    const json defects = report_of(broken).at("defects");
+    for (const json& defect : defects) kinds.push_back(defect.at("kind"));
     CHECK(std::find(kinds.begin(), kinds.end(), "edge-with-three-faces") != kinds.end());
     CHECK(std::find(kinds.begin(), kinds.end(), "repeated-vertex") != kinds.end());
     CHECK(report_of(broken).at("schemes").at("catmull-clark").at("suitable") == false);

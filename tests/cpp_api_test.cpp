@@ -168,6 +168,7 @@ TEST_CASE("the octahedron is interpolated through arrays, a mesh, fields and a t
     const std::vector<double> expected = scaled(octahedron_points, 1 / loop_alpha_4);
     SolveOptions options;
     options.tolerance = 1e-9;
+    options.certify = true;
     const double tolerance = options.tolerance * octahedron_diagonal * octahedron_inverse;
 
     SECTION("arrays")
@@ -178,6 +179,8 @@ TEST_CASE("the octahedron is interpolated through arrays, a mesh, fields and a t
         CHECK(report.message.empty());
         CHECK(report.residuals.size() == static_cast<std::size_t>(report.iterations) + 1);
         CHECK(report.max_error <= options.tolerance * octahedron_diagonal);
+        CHECK(largest_difference(P, expected) <= report.surface_error_bound);
+        CHECK(report.surface_error_bound <= tolerance);
         CHECK(largest_difference(P, expected) <= tolerance);
         CHECK(largest_difference(A.limit_points(P), octahedron_points) <= 5 * 2.3 * 1.2e-7); // floats, rows of five entries up to 55/24
     }

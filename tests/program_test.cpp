@@ -205,15 +205,3 @@ TEST_CASE("programs are built where the cache folder cannot be written", "[devic
     CHECK(imported(context_with_cache(folder.file("file/cache")), narrow) == narrow_rows);
     CHECK(io_test::file_bytes(folder.file("file")) == "in the way");
 }
-
-TEST_CASE("without double precision asked for, a kernel's preprocessed source has none", "[device][program]") {
-    // Devices without it refuse the very word. The default types must do on all of them.
-    const std::vector<std::string> lines = embedded_lines().at("kernels/transfer.cl");
-    std::vector<std::string> with_double;
-    for (const std::string& line : lines) {
-        if (line.substr(0, 2) != "//" && contains(line, "double") && line.substr(0, 7) != "#define") with_double.push_back(line);
-    }
-    CHECK(with_double == std::vector<std::string>{"typedef double lcl_wide;"});
-    const TemporaryFolder folder;
-    CHECK_NOTHROW(context_with_cache(folder.path())->kernel("transfer", "lcl_export_points", "-D double=no_double_here"));
-}

@@ -92,7 +92,7 @@ template <class T> void check_round_trip(const std::shared_ptr<Context>& context
     context->read(target, 0, target.bytes(), found.data(), "reading the target");
     CHECK(found == expected);  // what is not a taken channel keeps its -5
 
-    // Back and forth, each of the two sums rounds at most by half an ulp of 1003 in the coarser of the types.
+    // Back and forth: the row, at most 6 in size before its scale, rounds to Real, and the sum, about 1003, to Source.
     const double eps = std::max<double>(std::numeric_limits<typename T::Real>::epsilon() / 100, std::numeric_limits<typename T::Source>::epsilon());
     for (std::size_t i = 0; i < c.count; ++i) {
         for (std::size_t k = 0; k < c.width && c.has(k); ++k) REQUIRE(std::abs(double(found[c.place(i, k)]) - double(c.array[c.place(i, k)])) <= 1024 * eps);

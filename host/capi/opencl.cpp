@@ -61,7 +61,10 @@ Buffer frame(const lcl_field_s& field, const ChannelBlock& block, bool as_double
     return buffer;
 }
 
-void transfer(lcl_field_s& field, const CallerRows& rows, const char* kernel) {
+enum class Direction { into_field, out_of_field };
+
+void transfer(lcl_field_s& field, const CallerRows& rows, Direction direction) {
+    const bool imports = direction == Direction::into_field;
     Field& inner = field.field;
     Context& context = inner.context();
     const bool as_double = inner.real() == Real::full || rows.type == LCL_TYPE_DOUBLE;
@@ -70,9 +73,9 @@ void transfer(lcl_field_s& field, const CallerRows& rows, const char* kernel) {
         const ChannelBlock& block = inner.blocks()[b];
         const Buffer caller(field.A->context->context, rows.memory, 0, 0);
         const std::string options = kernel_options(context, inner.real(), block.width, 1) + " -D LCL_SOURCE=" + (rows.type == LCL_TYPE_FLOAT ? "float" : "double");
-        launch(context, context.kernel("transfer", kernel, options), {static_cast<std::size_t>(inner.rows()), 0}, static_cast<cl_uint>(inner.rows()), static_cast<cl_ulong>(stride),
+        launch(context, context.kernel("transfer", imports ? "lcl_import_points" : "lcl_export_points", options), {static_cast<std::size_t>(inner.rows()), 0}, static_cast<cl_uint>(inner.rows()), static_cast<cl_ulong>(stride),
                static_cast<cl_ulong>(offset), static_cast<cl_uint>(block.first), static_cast<cl_uint>(block.count), field.A->system->A->vertex_order(), frame(field, block, as_double),
-               caller, inner.buffer(b));
+               imports ? caller : inner.buffer(b), imports ? inner.buffer(b) : caller);
     }
 }
 
@@ -122,7 +125,7 @@ lcl_status lcl_field_import_cl(lcl_field field, cl_mem memory, size_t offset, lc
         const CallerRows rows = checked(field, memory, offset, type, stride);
         wait_for_events(field->field.context(), event_count, events);
         if (!field->transform) field->transform = fitted(*field, rows);
-        transfer(*field, rows, "lcl_import_points");
+        transfer(*field, rows, Direction::into_field);
         give_marker(field->field.context(), done);
         return LCL_OK;
     });
@@ -133,7 +136,7 @@ lcl_status lcl_field_export_cl(lcl_field field, cl_mem memory, size_t offset, lc
         const CallerRows rows = checked(field, memory, offset, type, stride);
         if (!field->transform) throw InvalidArgument("the field holds no values yet");
         wait_for_events(field->field.context(), event_count, events);
-        transfer(*field, rows, "lcl_export_points");
+        transfer(*field, rows, Direction::out_of_field);
         give_marker(field->field.context(), done);
         return LCL_OK;
     });

@@ -72,12 +72,13 @@ Failure failure_of_result(lcl_status status, const lcl_solve_report& report) {
     return failure;
 }
 
-/// The library builds kernels at their first use, mostly in the first sweeps: `compiled` seconds of its phases.
+/// The library builds kernels at their first use, somewhere in the upload or the solve: `compiled` seconds, taken off both in proportion.
 void note_seconds(Seconds& seconds, const lcl_solve_report& report, double compiled) {
-    const double in_solve = std::min(compiled, report.seconds_solve);
+    const double both = report.seconds_upload + report.seconds_solve;
+    const double rest = both > compiled ? 1.0 - compiled / both : 0.0;
     add_seconds(seconds.compile, compiled);
-    add_seconds(seconds.solve, report.seconds_solve - in_solve);
-    add_seconds(seconds.upload, report.seconds_upload - (compiled - in_solve));
+    add_seconds(seconds.upload, report.seconds_upload * rest);
+    add_seconds(seconds.solve, report.seconds_solve * rest);
     add_seconds(seconds.download, report.seconds_download);
 }
 

@@ -274,7 +274,7 @@ void Parser::refuse_what_is_not_there() const {
         if (options_.command == name) fail(exit_usage, std::string("this version does not have '") + name + "' yet; `limitcl --help` lists the commands it has");
     }
     for (const CLI::Option* option : later_options_) {
-        if (option->count() > 0) fail(exit_usage, "this version does not have " + options_.command + " " + option->get_name() + " yet; leave the option out");
+        if (option->count() > 0) fail(exit_usage, "this version does not have " + options_.command + " --" + option->get_lnames().front() + " yet; leave the option out");
     }
 }
 

@@ -9,7 +9,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
-#include <iterator>
+#include <sstream>
 #include <string_view>
 
 namespace lcl {
@@ -73,8 +73,9 @@ std::string BinaryCache::path(const std::string& key) const { return directory_ 
 std::optional<std::string> BinaryCache::load(const std::string& key) const {
     if (directory_.empty()) return std::nullopt;
     std::ifstream file(path(key), std::ios::binary);
-    if (!file) return std::nullopt;
-    const std::string content{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+    std::ostringstream bytes;
+    if (!(bytes << file.rdbuf())) return std::nullopt;  // no file, an empty one, or a folder
+    const std::string content = bytes.str();
     // The header of the true binary is known but for the binary itself, which is whatever follows the key.
     const std::size_t head_end = content.find('\n', magic.size());
     if (head_end == std::string::npos || content.size() < head_end + 1 + key.size()) return std::nullopt;

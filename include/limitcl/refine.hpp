@@ -15,7 +15,8 @@ struct Locations {
 };
 
 /// Refines `levels` times (0: a copy with locations), in double on the host. alpha and lambda of `scheme` rule the first refinement alone: read the
-/// result with both 0. It carries refined creases and corners; colours and scalar properties are refined like points. Errors: LCL_ERROR_BAD_INPUT, LCL_ERROR_MEMORY.
+/// result with both 0. It carries refined creases and corners; colours and scalar properties are refined like points.
+/// Errors: LCL_ERROR_BAD_INPUT, LCL_ERROR_MEMORY.
 inline Mesh refine(const Mesh& mesh, int levels = 1, const SchemeOptions& scheme = {})
 {
     if (levels < 0)

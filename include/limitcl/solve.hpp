@@ -29,6 +29,7 @@ struct SolveOptions {
     double weight = 0;        ///< W-PIA: 0: the best, from the estimated spectrum; else above 0 and below 2
     bool warm_start = false;  ///< the output holds the start P_0; else P_0 = M
     bool keep_going = false;  ///< iterate although A is singular or indefinite
+    bool certify = false;     ///< also SolveReport::surface_error_bound (without diagonal dominance some ten short solves at an operator's first call)
     double diagonal = 0;      ///< model size that the tolerance refers to; 0: that of the operator's mesh
     /// Return false to cancel (Error LCL_ERROR_CANCELLED). What it throws reaches the caller of interpolate.
     std::function<bool(int iteration, double residual, double target)> progress;
@@ -43,7 +44,7 @@ struct SolveReport {
     std::vector<double> residuals;   ///< E_0 .. E_iterations, E_k = max_i |M - A P_k|_i
     double lambda_min = 0;           ///< estimate; NaN if none
     double max_error = 0;            ///< final residual recomputed in double
-    double surface_error_bound = 0;  ///< bound of the distance to the exact solution's surface; NaN where none is known
+    double surface_error_bound = 0;  ///< with certify: bound of the distance to the exact solution's surface; NaN without, and where none is known
     double channel_error = 0;        ///< the residual of further channels, relative to their ranges
     double seconds_upload = 0, seconds_solve = 0, seconds_download = 0;
     std::vector<std::int32_t> vertices; ///< where it is singular or indefinite
@@ -168,6 +169,7 @@ inline detail::SolveCall::SolveCall(const SolveOptions& options) : progress_(opt
     options_.warm_start = options.warm_start;
     options_.keep_going = options.keep_going;
     options_.diagonal = options.diagonal;
+    options_.certify = options.certify;
     if (progress_) {
         options_.progress = &SolveCall::forward_progress;
         options_.progress_user = this;
