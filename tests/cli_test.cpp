@@ -73,6 +73,26 @@ Outcome run(const Folder& folder, const std::string& arguments, const std::strin
     return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, streams.read("out"), streams.read("err")};
 }
 
+/// Starts a program in the folder with a standard input that says nothing until this process ends.
+pid_t start(const Folder& folder, const std::vector<std::string>& words) {
+    int silent[2];
+    REQUIRE(pipe2(silent, O_CLOEXEC) == 0);
+    std::vector<char*> arguments;
+    for (const std::string& word : words) arguments.push_back(const_cast<char*>(word.c_str()));
+    arguments.push_back(nullptr);
+    const pid_t child = fork();
+    if (child == 0) {
+        const int nowhere = open("/dev/null", O_WRONLY);
+        dup2(silent[0], STDIN_FILENO);
+        dup2(nowhere, STDOUT_FILENO);
+        dup2(nowhere, STDERR_FILENO);
+        if (chdir(folder.path.c_str()) == 0) execvp(arguments[0], arguments.data());
+        _exit(127);
+    }
+    close(silent[0]);
+    return child;
+}
+
 json report_of(const Outcome& outcome) {
     INFO(outcome.out << outcome.err);
     REQUIRE(json::accept(outcome.out));
@@ -331,6 +351,7 @@ TEST_CASE("an iteration limit that is too low is exit code 4, --sweeps is exit c
     CHECK(report.at("status") == "ok");
     CHECK(report.at("converged") == false);
     CHECK(report.at("iterations") == 3);
+    CHECK(report_of(run(folder, "interpolate grid.obj -o out.obj --solver pia --sweeps 1000 --report -")).at("iterations") == 1000);
     REQUIRE(report.at("residuals").size() == 4);
     CHECK(report.at("residuals")[3].get<double>() < report.at("residuals")[0].get<double>());
     CHECK(folder.has("out.obj"));
@@ -432,6 +453,7 @@ TEST_CASE("the report has the fields of the contract", "[cli][report]") {
     CHECK(parameters.at("precision") == "mixed");
     CHECK(report.at("converged") == true);
     CHECK(report.at("max_error").get<double>() <= 1e-8 * grid_diagonal_6);
+    CHECK(report.at("surface_error_bound").get<double>() >= report.at("max_error").get<double>());  // |A^-1| is at least 1: rows sum to one
     CHECK(report.at("residuals").size() == report.at("iterations").get<std::size_t>() + 1);
     for (const char* phase : {"read", "topology", "compile", "upload", "solve", "download", "write", "total"}) CHECK(report.at("seconds").at(phase).get<double>() >= 0.0);
 }
@@ -663,16 +685,11 @@ TEST_CASE("devices are listed and pass the self-test", "[cli][devices]") {
 TEST_CASE("Ctrl-C is exit code 130 with nothing written", "[cli][exit]") {
     const Folder folder;
     folder.file("grid.obj", bumpy_grid(40));
-    const pid_t child = fork();
-    if (child == 0) {
-        const int nowhere = open("/dev/null", O_RDWR);
-        dup2(nowhere, STDOUT_FILENO);
-        dup2(nowhere, STDERR_FILENO);
-        if (chdir(folder.path.c_str()) != 0) _exit(126);
-        const std::string path = program();
-        execl(path.c_str(), path.c_str(), "interpolate", "grid.obj", "-o", "out.obj", "--solver", "pia", "--sweeps", "3000000", "--report", "report.json", static_cast<char*>(nullptr));
-        _exit(127);
-    }
+    // one that iterates for minutes, one that waits for standard input
+    const std::vector<std::string> arguments = GENERATE(values<std::vector<std::string>>({{"grid.obj", "--solver", "pia", "--sweeps", "3000000"}, {"-", "--format", "obj"}}));
+    std::vector<std::string> words = {program(), "interpolate", "-o", "out.obj", "--report", "report.json"};
+    words.insert(words.end(), arguments.begin(), arguments.end());
+    const pid_t child = start(folder, words);
     std::this_thread::sleep_for(std::chrono::milliseconds(1500));
     REQUIRE(kill(child, SIGINT) == 0);
     int status = 0;

@@ -96,7 +96,7 @@ TEST_CASE("PLY elements and properties come in any order, and unknown ones are s
         ascii_header("comment by hand\nelement face 2\nproperty uchar flag\nproperty list uint8 int32 vertex_index\nelement edge 1\nproperty int a\n"
                      "property list uchar float more\nobj_info none\nelement vertex 3\nproperty float z\nproperty list uchar int links\n"
                      "property float32 x\nproperty short heat\nproperty float ny\nproperty float y\n") +
-        "7 3 0 1 2\n8 3 2 1 0\n5 2 0.5 0.25\n3 2 9 9 1 -40 0 2\n6 0 4 41 0 5\n\n9 1 0 7 42 0 8 99\n");
+        "7 3 0 1 2\n8 3 2 1 0\n5 2 0.5 0.25\n3 2 9 9 1 -40 0 2\n6 0 4 41 0 5\n\n9 1 0 7 42 0 8\n");
     CHECK(same_mesh(file.mesh, mesh_of({1, 2, 3, 4, 5, 6, 7, 8, 9}, {{0, 1, 2}, {2, 1, 0}})));
     REQUIRE(file.properties.size() == 1);
     CHECK(file.properties[0].name == "heat");
@@ -104,8 +104,13 @@ TEST_CASE("PLY elements and properties come in any order, and unknown ones are s
     CHECK(file.properties[0].values == std::vector<double>{-40, 41, 42});
     CHECK(file.ply_position_type == "float");
     CHECK(file.warnings == std::vector<std::string>{"the property 'flag' of the faces was dropped", "the element 'edge' was skipped",
-                                                    "the property 'links' of the vertices was dropped",
-                                                    "1 rows have more values than the header announces; those were dropped"});
+                                                    "the property 'links' of the vertices was dropped"});
+}
+
+TEST_CASE("a PLY row with more values than its header announces is refused", "[io][ply]") {
+    const std::string text = ascii_header("element vertex 3\nproperty float x\nproperty float y\nproperty float z\nelement face 1\nproperty list uchar int vertex_indices\n") +
+                             "0 0 0\n1 0 0\n0 1 0 7\n3 0 1 2\n";
+    CHECK_THROWS_WITH(read_ply_text(text), Catch::Contains(":12: the row has more values than the header announces"));
 }
 
 TEST_CASE("PLY binary bodies begin right behind the header's last line break", "[io][ply]") {

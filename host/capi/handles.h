@@ -56,15 +56,18 @@ struct lcl_mesh_s : lcl::Counted {
     std::vector<lcl::SurfaceLocation> locations;   // of a refined mesh
     std::map<lcl_note, std::vector<std::string>> notes;
 
-    /// Topology and features of a sound mesh, built once; BadInput with the reason if it is not sound.
+    /// Topology and features of a sound mesh, built once; BadInput with the reason if it is not sound, or if the file had a tag that is refused.
     const lcl::Topology& topology();
     const lcl::Features& features();
+    /// The same whatever the tags: for counts.
+    const lcl::Topology& sound_topology();
+    const lcl::Features& sound_features();
     const std::vector<lcl::Defect>& defects();
     lcl::BoundaryRule boundary_rule() const;
     void forget_features();
 
 private:
-    void refuse_tags();
+    void refuse_tags(const lcl::Topology& topology) const;
     std::mutex mutex_;  // several threads may read one mesh
     std::optional<lcl::Topology> topology_;
     std::optional<lcl::Features> features_;

@@ -7,30 +7,38 @@
 
 using namespace lcl;
 
-const Topology& lcl_mesh_s::topology() {
+const Topology& lcl_mesh_s::sound_topology() {
     const std::lock_guard<std::mutex> lock(mutex_);
-    if (topology_) return *topology_;
-    Topology built = build_topology(file.mesh);
-    refuse_tags();
-    const bool has_boundary = std::count(built.twin.begin(), built.twin.end(), -1) > 0;
-    if (file.tags.interpolate_boundary == 0 && boundary == LCL_BOUNDARY_DEFAULT && has_boundary)
-        throw BadInput("the file asks for `t interpolateboundary 0` (no surface along the boundary) on a mesh with a boundary, which is not offered: choose a boundary rule");
-    topology_ = std::move(built);
+    if (!topology_) topology_ = build_topology(file.mesh);
     return *topology_;
 }
 
-void lcl_mesh_s::refuse_tags() {
-    if (!file.tags.refused.empty()) throw BadInput(file.tags.refused);
+const Topology& lcl_mesh_s::topology() {
+    const Topology& sound = sound_topology();
+    refuse_tags(sound);
+    return sound;
 }
 
-const Features& lcl_mesh_s::features() {
-    const Topology& sound = topology();
+void lcl_mesh_s::refuse_tags(const Topology& topology) const {
+    if (!file.tags.refused.empty()) throw BadInput(file.tags.refused);
+    const bool no_rule = file.tags.interpolate_boundary == 0 && boundary == LCL_BOUNDARY_DEFAULT;
+    if (no_rule && std::count(topology.twin.begin(), topology.twin.end(), -1) > 0)
+        throw BadInput("the file asks for `t interpolateboundary 0` (no surface along the boundary) on a mesh with a boundary, which is not offered: choose a boundary rule");
+}
+
+const Features& lcl_mesh_s::sound_features() {
+    const Topology& sound = sound_topology();
     const std::lock_guard<std::mutex> lock(mutex_);
     if (features_) return *features_;
     FeatureOptions options = feature_options;
     options.boundary = boundary_rule();
     features_ = find_features(file.mesh, sound, options);
     return *features_;
+}
+
+const Features& lcl_mesh_s::features() {
+    topology();
+    return sound_features();
 }
 
 const std::vector<Defect>& lcl_mesh_s::defects() {
@@ -136,15 +144,15 @@ std::map<Index, Index> histogram(lcl_mesh_s& mesh, lcl_histogram which) {
         for (Index f = 0; f < mesh.file.mesh.face_count(); ++f) ++counts[mesh.file.mesh.degree(f)];
         return counts;
     }
-    const Topology& topology = mesh.topology();
+    const Topology& topology = mesh.sound_topology();
     for (Index v = 0; v < topology.vertex_count; ++v)
         if (!topology.is_isolated(v)) ++counts[topology.valence(v)];
     return counts;
 }
 
 lcl_mesh_info sound_info(lcl_mesh_s& mesh, lcl_mesh_info info) {
-    const Topology& topology = mesh.topology();
-    const Features& features = mesh.features();
+    const Topology& topology = mesh.sound_topology();
+    const Features& features = mesh.sound_features();
     info.edges = topology.edge_count;
     info.boundary_edges = 0;
     for (Index e = 0; e < topology.edge_count; ++e) info.boundary_edges += topology.is_boundary_edge(e);
@@ -290,8 +298,8 @@ lcl_status lcl_mesh_add_features(lcl_mesh mesh, const lcl_features* features) {
 
 lcl_status lcl_mesh_get_features(lcl_mesh mesh, lcl_boundary* boundary, int32_t* creases, size_t* crease_count, int32_t* corners, size_t* corner_count) {
     return guarded([&] {
-        const Topology& topology = required(mesh, "mesh")->topology();
-        const Features& features = mesh->features();
+        const Topology& topology = required(mesh, "mesh")->sound_topology();
+        const Features& features = mesh->sound_features();
         if (boundary != nullptr) *boundary = static_cast<lcl_boundary>(static_cast<int>(mesh->boundary_rule()) + 1);
         if (crease_count != nullptr) *crease_count = features.crease_count;
         if (corner_count != nullptr) *corner_count = features.corner_count;

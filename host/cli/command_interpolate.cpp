@@ -55,6 +55,7 @@ lcl_solve_options solve_options(const Options& options, SolveProgress& state) {
     solve.max_iterations = options.max_iterations;
     solve.exact_sweeps = options.sweeps;
     solve.keep_going = options.keep_going || options.sweeps > 0;  // exactly so many sweeps, whatever they give
+    solve.certify = !options.report.empty();  // the bound may cost some ten short solves: for those who read it
     solve.progress = on_progress;
     solve.progress_user = &state;
     return solve;

@@ -12,12 +12,10 @@ struct Release {
     void operator()(lcl_context context) const { lcl_context_release(context); }
     void operator()(lcl_mesh mesh) const { lcl_mesh_release(mesh); }
     void operator()(lcl_operator A) const { lcl_operator_release(A); }
-    void operator()(lcl_field field) const { lcl_field_release(field); }
 };
 
 using Context = std::unique_ptr<lcl_context_s, Release>;
 using Mesh = std::unique_ptr<lcl_mesh_s, Release>;
 using Operator = std::unique_ptr<lcl_operator_s, Release>;
-using Field = std::unique_ptr<lcl_field_s, Release>;
 
 }  // namespace lcl::cli

@@ -2,6 +2,10 @@
 #include "host/cli/job.h"
 
 #include <algorithm>
+#include <cerrno>
+#include <cstring>
+
+#include <unistd.h>
 
 #include "host/cli/failure.h"
 #include "host/cli/features.h"
@@ -16,6 +20,33 @@ void log_to_terminal(void* user, std::int32_t level, const char* message) {
     Job& job = *static_cast<Job*>(user);
     if (level <= LCL_LOG_WARNING) warn(job, message);
     else job.terminal.log(message);
+}
+
+/// Standard input is read here: a pipe may let wait for ever, and Ctrl-C has to end that.
+std::vector<char> standard_input() {
+    std::vector<char> bytes(1 << 16);
+    for (std::size_t size = 0;;) {
+        check_interrupt();
+        if (size == bytes.size()) bytes.resize(2 * size);
+        const ssize_t count = ::read(STDIN_FILENO, bytes.data() + size, bytes.size() - size);
+        if (count < 0 && errno == EINTR) continue;
+        if (count < 0) fail(exit_bad_input, std::string("standard input cannot be read: ") + std::strerror(errno));
+        size += static_cast<std::size_t>(count);
+        if (count > 0) continue;
+        bytes.resize(size);
+        return bytes;
+    }
+}
+
+Mesh read_mesh(const Options& options) {
+    lcl_mesh mesh = nullptr;
+    if (options.input != "-") {
+        check(lcl_mesh_read(options.input.c_str(), LCL_FORMAT_BY_ENDING, &mesh));
+    } else {
+        const std::vector<char> bytes = standard_input();
+        check(lcl_mesh_read_memory(bytes.data(), bytes.size(), options.format, "standard input", &mesh));
+    }
+    return Mesh(mesh);
 }
 
 MeshSummary summary_of(lcl_mesh mesh) {
@@ -65,11 +96,23 @@ Phase::~Phase() {
     const double elapsed = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
     const double compiled = lcl_context_compile_seconds(context_) - compiled_;
     add_seconds(job_.report.seconds.*seconds_, elapsed - compiled);
-    if (context_ != nullptr) add_seconds(job_.report.seconds.compile, compiled);
+    add_seconds(job_.report.seconds.compile, compiled);
+}
+
+void check_of_input(const Job& job, lcl_status status) {
+    if (status == LCL_OK) return;
+    Failure failure = failure_of(status);
+    failure.message = of_input(job, failure.message);
+    throw failure;
+}
+
+std::string of_input(const Job& job, const std::string& message) {
+    const std::string name = shown_input(job.options);
+    return message.find(name) == std::string::npos ? name + ": " + message : message;
 }
 
 void add_seconds(double& phase, double seconds) {
-    phase = std::max(phase, 0.0) + std::max(seconds, 0.0);
+    phase += std::max(seconds, 0.0);
 }
 
 void warn(Job& job, const std::string& text) {
@@ -81,19 +124,13 @@ void warn(Job& job, const std::string& text) {
 
 void warn_of_notes(Job& job, lcl_mesh mesh) {
     for (int index = 0; index < lcl_mesh_note_count(mesh, LCL_NOTE_WARNING); ++index) warn(job, lcl_mesh_note(mesh, LCL_NOTE_WARNING, index));
-    for (int index = 0; index < lcl_mesh_note_count(mesh, LCL_NOTE_IGNORED_TAG); ++index)
-        warn(job, shown_input(job.options) + ": the tag '" + lcl_mesh_note(mesh, LCL_NOTE_IGNORED_TAG, index) + "' is ignored");
 }
 
 Mesh read_input(Job& job) {
     Mesh mesh;
     {
         const Phase phase(job, &Seconds::read, "reading " + shown_input(job.options));
-        lcl_mesh handle = nullptr;
-        const lcl_status status = lcl_mesh_read(job.options.input.c_str(), job.options.input == "-" ? job.options.format : LCL_FORMAT_BY_ENDING, &handle);
-        mesh.reset(handle);
-        check_interrupt();  // standard input that was waiting comes back with an error of its own
-        check(status);
+        mesh = read_mesh(job.options);
     }
     add_features(job, mesh.get());
     job.report.mesh = summary_of(mesh.get());
@@ -107,7 +144,7 @@ Mesh read_input(Job& job) {
 Mesh read_sound_input(Job& job) {
     Mesh mesh = read_input(job);
     if (lcl_mesh_face_count(mesh.get()) == 0) fail(exit_bad_input, shown_input(job.options) + ": the mesh has no faces: a surface needs at least one");
-    check(lcl_mesh_validate(mesh.get()));
+    check_of_input(job, lcl_mesh_validate(mesh.get()));
     check_interrupt();
     return mesh;
 }
@@ -178,7 +215,7 @@ void say_seconds(Job& job) {
         {"upload", seconds.upload}, {"solve", seconds.solve}, {"download", seconds.download}, {"write", seconds.write}, {"total", seconds.total}};
     std::vector<std::string> parts;
     for (const auto& [name, value] : phases) {
-        if (value >= 0.0) parts.push_back(std::string(name) + " " + short_number(value));
+        if (value > 0.0) parts.push_back(std::string(name) + " " + short_number(value));
     }
     job.terminal.say("seconds", join(parts, ", "));
 }

@@ -40,6 +40,10 @@ private:
 /// Adds to a phase of the report.
 void add_seconds(double& phase, double seconds);
 
+/// check() of a call that looks at the mesh of IN: its name stands before the sentence, if it is not in it.
+void check_of_input(const Job& job, lcl_status status);
+std::string of_input(const Job& job, const std::string& message);
+
 /// A warning in the report (once) and on standard error.
 void warn(Job& job, const std::string& text);
 /// The notes of a mesh that are warnings, as warnings.

@@ -9,7 +9,7 @@
 
 namespace lcl::cli {
 
-/// Replaces points and the named channels of a mesh by A of them. In double where the device has it, unless single precision was asked for.
+/// Replaces points and the named channels of a mesh by A of them.
 void move_to_limit(Job& job, lcl_context context, lcl_operator A, lcl_mesh mesh, const std::vector<std::string>& channels);
 
 }  // namespace lcl::cli

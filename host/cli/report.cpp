@@ -108,13 +108,8 @@ void add_lists(Json& json, const Report& report) {
 }
 
 Json seconds_json(const Seconds& seconds) {
-    const std::pair<const char*, double> phases[] = {{"read", seconds.read}, {"topology", seconds.topology}, {"compile", seconds.compile},
-        {"upload", seconds.upload}, {"solve", seconds.solve}, {"download", seconds.download}, {"write", seconds.write}, {"total", seconds.total}};
-    Json json = Json::object();
-    for (const auto& [name, value] : phases) {
-        if (value >= 0.0) json[name] = value;
-    }
-    return json;
+    return {{"read", seconds.read}, {"topology", seconds.topology}, {"compile", seconds.compile}, {"upload", seconds.upload}, {"solve", seconds.solve},
+        {"download", seconds.download}, {"write", seconds.write}, {"total", seconds.total}};
 }
 
 }  // namespace

@@ -51,9 +51,9 @@ struct KernelCheck {
     bool passed = false;
 };
 
-/// Seconds by phase; negative: the phase did not happen.
+/// Seconds by phase; 0: it did not happen, or is part of `solve` (the transfers of `limit`).
 struct Seconds {
-    double read = -1, topology = -1, compile = -1, upload = -1, solve = -1, download = -1, write = -1, total = -1;
+    double read = 0, topology = 0, compile = 0, upload = 0, solve = 0, download = 0, write = 0, total = 0;
 };
 
 /// Everything as far as known; what is not known is left out of the JSON.

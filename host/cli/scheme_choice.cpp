@@ -21,11 +21,11 @@ std::vector<double> read_lambda(const std::string& path, std::int32_t vertex_cou
     return lambda;
 }
 
-void require_suitable(lcl_mesh mesh, const lcl_scheme_options& options) {
+void require_suitable(const Job& job, lcl_mesh mesh, const lcl_scheme_options& options) {
     lcl_suitability suitability = LCL_SUITABILITY_INIT;
-    check(lcl_mesh_check_scheme(mesh, &options, &suitability));
+    check_of_input(job, lcl_mesh_check_scheme(mesh, &options, &suitability));
     if (suitability.suitable) return;
-    Failure failure = make_failure(exit_bad_input, suitability.reason);
+    Failure failure = make_failure(exit_bad_input, of_input(job, suitability.reason));
     failure.vertices.assign(suitability.vertices, suitability.vertices + suitability.vertex_count);
     throw failure;
 }
@@ -59,7 +59,7 @@ SchemeChoice choose_scheme(Job& job, lcl_mesh mesh) {
         job.report.set_parameter("subset", static_cast<std::int64_t>(choice.subset.size()));
     }
     note_scheme(job, choice.options);
-    require_suitable(mesh, choice.options);
+    require_suitable(job, mesh, choice.options);
     return choice;
 }
 

@@ -76,13 +76,12 @@ public:
 
     void end_row() {
         scan_.skip_blanks();
-        rows_with_extras_ += !scan_.at_line_end();
+        if (!scan_.at_line_end()) fail("the row has more values than the header announces; correct the header or the row");
         scan_.skip_line();
     }
 
     std::size_t least_size(Scalar) const { return 2; }               // "0 "
     std::size_t remaining() const { return scan_.remaining() + 1; }  // the last line may lack its end
-    std::size_t rows_with_extras() const { return rows_with_extras_; }
     [[noreturn]] void fail(const std::string& sentence) const { scan_.fail(scan_.at(), sentence); }
 
 private:
@@ -92,7 +91,6 @@ private:
     }
 
     TextScanner& scan_;
-    std::size_t rows_with_extras_ = 0;
 };
 
 /// Values of a binary body.
@@ -133,7 +131,6 @@ public:
 
     std::size_t least_size(Scalar scalar) const { return size_of(scalar); }
     std::size_t remaining() const { return static_cast<std::size_t>(input_.data + input_.size - at_); }
-    std::size_t rows_with_extras() const { return 0; }
     [[noreturn]] void fail(const std::string& sentence) const {
         throw BadInput(input_.name + ": " + sentence + " (byte " + std::to_string(at_ - input_.data) + ")");
     }
@@ -275,8 +272,6 @@ private:
             }
         }
         if (!has_vertices) scan_.fail(input_.data, "the header has no element 'vertex'");
-        if (source.rows_with_extras() > 0)
-            file_.warnings.push_back(std::to_string(source.rows_with_extras()) + " rows have more values than the header announces; those were dropped");
     }
 
     template <class Source>

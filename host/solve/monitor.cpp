@@ -40,9 +40,9 @@ bool Monitor::stop(const ResidualNorms& residual) {
     if (progress_ && !progress_(iteration_, residual.position, target_.position)) throw Cancelled("the solve was cancelled after " + std::to_string(iteration_) + " iterations");
     const auto end = [&](Outcome outcome) { outcome_ = outcome; return true; };
     if (stage_.met_by(residual)) return end(Outcome::converged);
-    if (!std::isfinite(size) || size > growth_limit * first_) return end(Outcome::diverged);
+    if (!std::isfinite(size) || (!is_exact_ && size > growth_limit * first_)) return end(Outcome::diverged);
     if (iteration_ >= limit_) return end(Outcome::exhausted);
-    return has_stalled(size) && end(Outcome::stalled);
+    return !is_exact_ && has_stalled(size) && end(Outcome::stalled);
 }
 
 }  // namespace lcl

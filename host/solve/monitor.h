@@ -25,9 +25,9 @@ struct Target {
 
 class Monitor {
 public:
-    /// progress(iteration, residual, target) returns false to cancel (throws Cancelled); may be empty.
-    Monitor(int max_iterations, Target target, std::function<bool(int, double, double)> progress)
-        : max_iterations_(max_iterations), target_(target), progress_(std::move(progress)) {}
+    /// progress(iteration, residual, target) returns false to cancel (throws Cancelled); may be empty. is_exact: max_iterations are made whatever the residual does, unless it is no number.
+    Monitor(int max_iterations, Target target, std::function<bool(int, double, double)> progress, bool is_exact = false)
+        : max_iterations_(max_iterations), target_(target), progress_(std::move(progress)), is_exact_(is_exact) {}
 
     /// Starts a stage that ends when `target` is met or after `limit` iterations in all (below 0: the monitor's own).
     void begin_stage(Target target, int limit = -1);
@@ -38,6 +38,7 @@ public:
 
     int iteration() const { return iteration_; }
     int max_iterations() const { return max_iterations_; }
+    bool is_exact() const { return is_exact_; }
     Outcome outcome() const { return outcome_; }
     void set_outcome(Outcome outcome) { outcome_ = outcome; }
     const Target& target() const { return target_; }
@@ -52,6 +53,7 @@ private:
     int max_iterations_, limit_ = 0, iteration_ = 0;
     Target target_, stage_;
     std::function<bool(int, double, double)> progress_;
+    bool is_exact_ = false;
     Outcome outcome_ = Outcome::exhausted;
     std::vector<double> history_;
     double first_ = -1, best_ = -1;

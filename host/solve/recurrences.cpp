@@ -7,6 +7,11 @@
 #include <limits>
 
 namespace lcl {
+namespace {
+
+constexpr double negligible = 1e-28;  // of the first <r, r>_D
+
+}  // namespace
 
 // y = x + w (m - A x), or + (m - A x) / A_ii
 void iterate_stationary(DeviceOperator& A, const Part& part, double weight, bool jacobi, const Field& m, Field& x, Monitor& monitor) {
@@ -56,13 +61,14 @@ void iterate_conjugate_gradients(DeviceOperator& A, const Part& part, const Fiel
     if (monitor.stop(A.norms(x, part))) return;
     ChannelValues alpha(channels, 0.0), beta(channels, 0.0);
     ChannelValues rr = A.cg_update(alpha, p, q, x, r, part);  // alpha = 0: only <r, r>_D
+    const ChannelValues first = rr;
     for (;;) {
         A.cg_direction(beta, r, p, part);
         const ChannelValues pq = A.cg_apply(p, q, part);
         for (int c = 0; c < channels; ++c) {
-            const bool negative = rr[c] > 0 && !(pq[c] > 0);
-            if (negative && (coefficients == nullptr || pq[c] == 0)) return monitor.set_outcome(Outcome::indefinite);
-            alpha[c] = rr[c] > 0 ? rr[c] / pq[c] : 0.0;
+            const bool is_rounding = !(rr[c] > negligible * first[c]) || pq[c] == 0;  // this channel is solved
+            if (!is_rounding && pq[c] < 0 && coefficients == nullptr) return monitor.set_outcome(Outcome::indefinite);
+            alpha[c] = is_rounding ? 0.0 : rr[c] / pq[c];
         }
         const ChannelValues rr_next = A.cg_update(alpha, p, q, x, r, part);
         for (int c = 0; c < channels; ++c) beta[c] = rr[c] > 0 ? rr_next[c] / rr[c] : 0.0;

@@ -14,6 +14,7 @@ namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 constexpr double stage_gain = 1e-4;     // what one stage of float sweeps on a correction gains at most: well above float's floor
+constexpr double wide_floor = 1e-13;    // residuals of wide fields, normalised, are rounding below
 constexpr double chebyshev_least = 0.02;  // below, conjugate gradients adapt better than an interval does
 constexpr double estimate_margin = 0.95;  // Ritz values lie above lambda_min
 
@@ -33,7 +34,7 @@ public:
         const Target target = exact ? Target{} : Target{options.tolerance * diagonal / unit, options.tolerance};
         std::function<bool(int, double, double)> progress;
         if (options.progress) progress = [call = options.progress, unit](int iteration, double residual, double goal) { return call(iteration, residual * unit, goal * unit); };
-        monitor_ = std::make_unique<Monitor>(exact ? options.exact_sweeps : options.max_iterations, target, progress);
+        monitor_ = std::make_unique<Monitor>(exact ? options.exact_sweeps : options.max_iterations, target, progress, exact);
         choose();
     }
 
@@ -130,16 +131,22 @@ private:
     void iterate_mixed(const Field& m, Field& x) {
         ResidualNorms norms = residual(m, x);
         Field d = A_.make_field(x.channels(), Real::single);
+        is_correction_ = true;
         for (;;) {
             const int before = monitor_->iteration();
             const Target& target = monitor_->target();
             stage_ = {std::max(target.position, stage_gain * norms.position), std::max(target.others, stage_gain * norms.others)};
+            if (norms.position + norms.others < wide_floor) stage_ = {};  // nothing left to refine: the last stage of an exact number of sweeps
             d.fill_zero();
             iterate(*correction_right_, d);
             A_.correct(d, x, part_);
             const ResidualNorms now = residual(m, x);
             monitor_->replace_last(now);
             if (target.met_by(now)) return monitor_->set_outcome(Outcome::converged);
+            if (monitor_->is_exact() && monitor_->outcome() == Outcome::converged) {
+                norms = now;
+                continue;
+            }
             const bool helps = now.position + now.others < 0.5 * (norms.position + norms.others);
             if (monitor_->outcome() != Outcome::converged || monitor_->iteration() >= monitor_->max_iterations()) return;
             if (!helps || monitor_->iteration() == before) return monitor_->set_outcome(Outcome::stalled);
@@ -148,7 +155,7 @@ private:
     }
 
     void iterate(const Field& m, Field& x) {
-        const Target target = x.real() == Real::single && stage_.position >= 0 ? stage_ : monitor_->target();
+        const Target target = is_correction_ ? stage_ : monitor_->target();
         monitor_->begin_stage(target);
         switch (solver_) {
             case Solver::pia: return iterate_stationary(A_, part_, 1, false, m, x, *monitor_);
@@ -217,6 +224,7 @@ private:
     Solver solver_ = Solver::automatic;
     Part part_;
     Target stage_;
+    bool is_correction_ = false;
     std::unique_ptr<Monitor> monitor_;
     std::unique_ptr<Field> correction_right_;
     SolveReport report_;
