@@ -68,7 +68,8 @@ struct Outcome {
 Outcome run(const Folder& folder, const std::string& arguments, const std::string& environment = "", const std::string& input = "/dev/null") {
     const Folder streams;
     const std::string out = (streams.path / "out").string(), err = (streams.path / "err").string();
-    const std::string command = "cd '" + folder.path.string() + "' && " + environment + " '" + program() + "' " + arguments + " < '" + input + "' > '" + out + "' 2> '" + err + "'";
+    const std::string command =
+        "cd '" + folder.path.string() + "' && " + environment + " '" + program() + "' " + arguments + " < '" + input + "' > '" + out + "' 2> '" + err + "'";
     const int status = std::system(command.c_str());
     return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, streams.read("out"), streams.read("err")};
 }
@@ -99,9 +100,7 @@ json report_of(const Outcome& outcome) {
     return json::parse(outcome.out);
 }
 
-std::size_t line_count(const std::string& text) {
-    return static_cast<std::size_t>(std::count(text.begin(), text.end(), '\n'));
-}
+std::size_t line_count(const std::string& text) { return static_cast<std::size_t>(std::count(text.begin(), text.end(), '\n')); }
 
 /// The last line: with the summary before it, the line of a failure.
 std::string last_line(const std::string& text) {
@@ -111,9 +110,7 @@ std::string last_line(const std::string& text) {
     return text.substr(before == std::string::npos ? 0 : before + 1, end - (before == std::string::npos ? 0 : before + 1) + 1);
 }
 
-bool contains(const std::string& text, const std::string& part) {
-    return text.find(part) != std::string::npos;
-}
+bool contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
 
 std::vector<Point> obj_points(const std::string& text) {
     std::vector<Point> points;
@@ -202,7 +199,8 @@ TEST_CASE("help lists the commands of this version and the program says what it 
     for (const char* command : {"evaluate", "closest", "spectrum", "denoise", "morph", "texture"}) CHECK_FALSE(contains(help.out, command));
     const Outcome command_help = run(folder, "interpolate --help");
     CHECK(command_help.exit_code == 0);
-    for (const char* option : {"--output", "--solver", "--subset", "--sweeps", "--alpha", "--boundary", "--tol", "--report"}) CHECK(contains(command_help.out, option));
+    for (const char* option : {"--output", "--solver", "--subset", "--sweeps", "--alpha", "--boundary", "--tol", "--report"})
+        CHECK(contains(command_help.out, option));
     for (const char* option : {"--handles", "--fair", "--normals"}) CHECK_FALSE(contains(command_help.out, option));
     const Outcome version = run(folder, "--version");
     CHECK(version.exit_code == 0);
@@ -214,7 +212,8 @@ TEST_CASE("wrong usage is exit code 2 with one line that says what to do", "[cli
     const Folder folder;
     folder.file("in.obj", octahedron);
     folder.file("in.xyz", "0 0 0\n");
-    const std::string arguments = GENERATE(as<std::string>(), "", "bogus", "interpolate", "interpolate in.obj", "interpolate in.obj -o", "interpolate in.obj -o out.obj --bogus",
+    const std::string arguments = GENERATE(
+        as<std::string>(), "", "bogus", "interpolate", "interpolate in.obj", "interpolate in.obj -o", "interpolate in.obj -o out.obj --bogus",
         "interpolate in.obj extra.obj -o out.obj", "interpolate in.obj -o out.xyz", "interpolate in.xyz -o out.obj", "interpolate in.obj -o out",
         "interpolate in.obj -o out.obj --scheme bogus", "interpolate in.obj -o out.obj --alpha 1.5", "interpolate in.obj -o out.obj --alpha -0.1",
         "interpolate in.obj -o out.obj --alpha soon", "interpolate in.obj -o out.obj --lambda 2", "interpolate in.obj -o out.obj --lambda=-1",
@@ -224,10 +223,11 @@ TEST_CASE("wrong usage is exit code 2 with one line that says what to do", "[cli
         "interpolate in.obj -o out.obj --precision half", "interpolate in.obj -o out.obj --solver sor", "interpolate in.obj -o out.obj --color blue",
         "interpolate in.obj -o out.obj --mask classic --alpha 0", "interpolate in.obj -o out.obj --mask classic --lambda 0.3",
         "interpolate in.obj -o out.obj --scheme loop --alpha 0", "interpolate in.obj -o out.obj --scheme doo-sabin --lambda 0",
-        "interpolate in.obj -o out.obj --scheme loop --mask catmull", "interpolate in.obj -o out.obj --quiet -v", "interpolate - -o out.obj", "interpolate in.obj -o -",
-        "interpolate in.obj -o out.obj --format obj", "interpolate in.obj -o - --format obj --report -", "interpolate in.obj -o out.obj --report out.obj",
-        "interpolate in.obj -o out.obj --channels heat", "refine in.obj -o out.obj --levels -1", "refine in.obj -o out.obj --levels 0",
-        "refine in.obj -o out.obj --map out.obj", "refine in.obj -o out.obj --map -", "devices --alpha 0", "selftest --tol 1", "devices in.obj");
+        "interpolate in.obj -o out.obj --scheme loop --mask catmull", "interpolate in.obj -o out.obj --quiet -v", "interpolate - -o out.obj",
+        "interpolate in.obj -o -", "interpolate in.obj -o out.obj --format obj", "interpolate in.obj -o - --format obj --report -",
+        "interpolate in.obj -o out.obj --report out.obj", "interpolate in.obj -o out.obj --channels heat", "refine in.obj -o out.obj --levels -1",
+        "refine in.obj -o out.obj --levels 0", "refine in.obj -o out.obj --map out.obj", "refine in.obj -o out.obj --map -", "devices --alpha 0",
+        "selftest --tol 1", "devices in.obj");
     const Outcome outcome = run(folder, arguments);
     INFO(arguments << "\n" << outcome.err);
     CHECK(outcome.exit_code == 2);
@@ -239,12 +239,21 @@ TEST_CASE("wrong usage is exit code 2 with one line that says what to do", "[cli
 TEST_CASE("what comes with a later version is refused by name", "[cli][exit]") {
     const Folder folder;
     folder.file("in.obj", octahedron);
-    const auto [arguments, name] = GENERATE(table<std::string, std::string>({{"evaluate in.obj --at f.csv -o o.csv", "'evaluate'"}, {"closest in.obj", "'closest'"},
-        {"expand in.obj -o o.obj --sum 3", "'expand'"}, {"spectrum in.obj", "'spectrum'"}, {"denoise in.obj -o o.obj", "'denoise'"}, {"sharpen --help", "'sharpen'"},
-        {"--quiet morph a.obj b.obj -o o_%03d.obj", "'morph'"}, {"texture in.obj -o o.ply", "'texture'"}, {"surface in.xyz -o o.obj", "'surface'"},
-        {"limit in.obj -o o.obj --normals", "--normals"}, {"interpolate in.obj -o o.obj --normals mesh --lambda 0.3", "--normals"},
-        {"interpolate in.obj -o o.obj --handles 1,2 --lambda 0.3", "--handles"}, {"interpolate in.obj -o o.obj --refined --lambda 0.3", "--refined"},
-        {"interpolate in.obj -o o.obj --fair 1 --lambda 0.3", "--fair"}, {"interpolate in.obj -o o.obj --map m.csv --lambda 0.3", "--map"}}));
+    const auto [arguments, name] = GENERATE(table<std::string, std::string>({{"evaluate in.obj --at f.csv -o o.csv", "'evaluate'"},
+                                                                             {"closest in.obj", "'closest'"},
+                                                                             {"expand in.obj -o o.obj --sum 3", "'expand'"},
+                                                                             {"spectrum in.obj", "'spectrum'"},
+                                                                             {"denoise in.obj -o o.obj", "'denoise'"},
+                                                                             {"sharpen --help", "'sharpen'"},
+                                                                             {"--quiet morph a.obj b.obj -o o_%03d.obj", "'morph'"},
+                                                                             {"texture in.obj -o o.ply", "'texture'"},
+                                                                             {"surface in.xyz -o o.obj", "'surface'"},
+                                                                             {"limit in.obj -o o.obj --normals", "--normals"},
+                                                                             {"interpolate in.obj -o o.obj --normals mesh --lambda 0.3", "--normals"},
+                                                                             {"interpolate in.obj -o o.obj --handles 1,2 --lambda 0.3", "--handles"},
+                                                                             {"interpolate in.obj -o o.obj --refined --lambda 0.3", "--refined"},
+                                                                             {"interpolate in.obj -o o.obj --fair 1 --lambda 0.3", "--fair"},
+                                                                             {"interpolate in.obj -o o.obj --map m.csv --lambda 0.3", "--map"}}));
     const Outcome outcome = run(folder, arguments);
     INFO(arguments << "\n" << outcome.err);
     CHECK(outcome.exit_code == 2);
@@ -265,7 +274,8 @@ TEST_CASE("bad input is exit code 3, says where, and leaves the output as it was
     folder.file("flipped.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\nf 1 2 3\nf 2 3 4\n");
     folder.file("points.obj", "v 0 0 0\nv 1 0 0\n");
     folder.file("empty.off", "");
-    folder.file("header.ply", "ply\nformat binary_little_endian 1.0\nelement vertex 2000000000\nproperty double x\nproperty double y\nproperty double z\nend_header\n");
+    folder.file("header.ply",
+                "ply\nformat binary_little_endian 1.0\nelement vertex 2000000000\nproperty double x\nproperty double y\nproperty double z\nend_header\n");
     folder.file("semi.obj", octahedron + "t crease 2/1/0 0 1 2.5\n");
     folder.file("list.txt", "0\n1\n\n1\n");
     folder.file("far.txt", "0\n6\n");
@@ -278,13 +288,29 @@ TEST_CASE("bad input is exit code 3, says where, and leaves the output as it was
     folder.file("cells.csv", "vertex,lambda\n0,0.5,1\n");
     folder.file("out.obj", "what was there before\n");
     const std::size_t entries = folder.entries();
-    const auto [arguments, part] = GENERATE(table<std::string, std::string>({{"missing.obj", "missing.obj"}, {"malformed.obj", "malformed.obj:2"}, {"range.obj", "8"},
-        {"twice.obj", "face 0"}, {"three.obj", "edge"}, {"flipped.obj", "orient"}, {"points.obj", "no faces"}, {"empty.off", "empty.off"}, {"header.ply", "header.ply"},
-        {"semi.obj", "crease"}, {"quad.obj --scheme loop", "face 0"}, {"good.obj --subset missing.txt", "missing.txt"}, {"good.obj --subset list.txt", "list.txt:4"},
-        {"good.obj --corners far.txt", "far.txt:2"}, {"good.obj --subset word.txt", "word.txt:1"}, {"good.obj --subset none.txt", "none.txt"},
-        {"good.obj --creases noedge.txt", "noedge.txt:2"}, {"good.obj --creases far.txt", "far.txt:1"}, {"good.obj --lambda missing.csv", "missing.csv"},
-        {"good.obj --lambda header.csv", "header.csv:1"}, {"good.obj --lambda ratio.csv", "ratio.csv:3"}, {"good.obj --lambda twice.csv", "twice.csv:3"},
-        {"good.obj --lambda cells.csv", "cells.csv:2"}}));
+    const auto [arguments, part] = GENERATE(table<std::string, std::string>({{"missing.obj", "missing.obj"},
+                                                                             {"malformed.obj", "malformed.obj:2"},
+                                                                             {"range.obj", "8"},
+                                                                             {"twice.obj", "face 0"},
+                                                                             {"three.obj", "edge"},
+                                                                             {"flipped.obj", "orient"},
+                                                                             {"points.obj", "no faces"},
+                                                                             {"empty.off", "empty.off"},
+                                                                             {"header.ply", "header.ply"},
+                                                                             {"semi.obj", "crease"},
+                                                                             {"quad.obj --scheme loop", "face 0"},
+                                                                             {"good.obj --subset missing.txt", "missing.txt"},
+                                                                             {"good.obj --subset list.txt", "list.txt:4"},
+                                                                             {"good.obj --corners far.txt", "far.txt:2"},
+                                                                             {"good.obj --subset word.txt", "word.txt:1"},
+                                                                             {"good.obj --subset none.txt", "none.txt"},
+                                                                             {"good.obj --creases noedge.txt", "noedge.txt:2"},
+                                                                             {"good.obj --creases far.txt", "far.txt:1"},
+                                                                             {"good.obj --lambda missing.csv", "missing.csv"},
+                                                                             {"good.obj --lambda header.csv", "header.csv:1"},
+                                                                             {"good.obj --lambda ratio.csv", "ratio.csv:3"},
+                                                                             {"good.obj --lambda twice.csv", "twice.csv:3"},
+                                                                             {"good.obj --lambda cells.csv", "cells.csv:2"}}));
     const Outcome outcome = run(folder, "interpolate " + arguments + " -o out.obj --report -");
     INFO(arguments << "\n" << outcome.err);
     CHECK(outcome.exit_code == 3);
@@ -420,8 +446,9 @@ TEST_CASE("interpolation then limit gives the input back, with every scheme and 
     folder.file("creases.txt", "8 9\n9 10\n10 11\n");
     folder.file("corners.txt", "24\n");
     folder.file("lambda.csv", "vertex,lambda\n8,0.5\n20,0.3\n");
-    const std::string options = GENERATE(as<std::string>(), "", "--alpha 0.5", "--lambda 0.3", "--lambda lambda.csv", "--scheme doo-sabin", "--mask classic",
-        "--boundary fixed", "--boundary edge-only", "--corners corners.txt", "--alpha 0.3 --lambda 0.2 --boundary fixed", "--device cpu --precision double");
+    const std::string options =
+        GENERATE(as<std::string>(), "", "--alpha 0.5", "--lambda 0.3", "--lambda lambda.csv", "--scheme doo-sabin", "--mask classic", "--boundary fixed",
+                 "--boundary edge-only", "--corners corners.txt", "--alpha 0.3 --lambda 0.2 --boundary fixed", "--device cpu --precision double");
     REQUIRE(run(folder, "interpolate grid.obj -o P.ply " + options).exit_code == 0);
     REQUIRE(run(folder, options + " limit P.ply -o back.obj").exit_code == 0);
     CHECK(largest_difference(obj_points(folder.read("back.obj")), obj_points(bumpy_grid(6))) <= 1.0000001e-6 * grid_diagonal_6);
@@ -433,15 +460,24 @@ TEST_CASE("the report has the fields of the contract", "[cli][report]") {
     const Outcome outcome = run(folder, "--tol 1e-8 interpolate grid.obj -o out.obj --report -");
     REQUIRE(outcome.exit_code == 0);
     const json report = report_of(outcome);
-    for (const char* field : {"limitcl", "command", "status", "message", "warnings", "where", "device", "mesh", "diagonal", "scheme", "parameters", "solver", "converged",
-             "iterations", "residuals", "lambda_min", "max_error", "surface_error_bound", "seconds"})
+    for (const char* field : {"limitcl", "command", "status", "message", "warnings", "where", "device", "mesh", "diagonal", "scheme", "parameters", "solver",
+                              "converged", "iterations", "residuals", "lambda_min", "max_error", "surface_error_bound", "seconds"})
         CHECK(report.contains(field));
     CHECK(report.at("status") == "ok");
     CHECK(report.at("message") == "");
     CHECK(report.at("command") == "interpolate");
     for (const char* field : {"platform", "name", "version"}) CHECK(report.at("device").at(field).is_string());
-    CHECK(report.at("mesh") == json({{"vertices", 49}, {"faces", 36}, {"edges", 84}, {"boundary_edges", 24}, {"boundary_loops", 1}, {"components", 1},
-                                   {"isolated_vertices", 0}, {"face_degrees", {{"4", 36}}}, {"valences", {{"2", 4}, {"3", 20}, {"4", 25}}}, {"creases", 0}, {"corners", 4}}));
+    CHECK(report.at("mesh") == json({{"vertices", 49},
+                                     {"faces", 36},
+                                     {"edges", 84},
+                                     {"boundary_edges", 24},
+                                     {"boundary_loops", 1},
+                                     {"components", 1},
+                                     {"isolated_vertices", 0},
+                                     {"face_degrees", {{"4", 36}}},
+                                     {"valences", {{"2", 4}, {"3", 20}, {"4", 25}}},
+                                     {"creases", 0},
+                                     {"corners", 4}}));
     CHECK(report.at("diagonal").get<double>() == Approx(grid_diagonal_6).epsilon(1e-14));
     CHECK(report.at("scheme") == "catmull-clark");
     const json parameters = report.at("parameters");
@@ -455,7 +491,8 @@ TEST_CASE("the report has the fields of the contract", "[cli][report]") {
     CHECK(report.at("max_error").get<double>() <= 1e-8 * grid_diagonal_6);
     CHECK(report.at("surface_error_bound").get<double>() >= report.at("max_error").get<double>());  // |A^-1| is at least 1: rows sum to one
     CHECK(report.at("residuals").size() == report.at("iterations").get<std::size_t>() + 1);
-    for (const char* phase : {"read", "topology", "compile", "upload", "solve", "download", "write", "total"}) CHECK(report.at("seconds").at(phase).get<double>() >= 0.0);
+    for (const char* phase : {"read", "topology", "compile", "upload", "solve", "download", "write", "total"})
+        CHECK(report.at("seconds").at(phase).get<double>() >= 0.0);
 }
 
 TEST_CASE("meshes go through pipes", "[cli][io]") {
@@ -491,7 +528,8 @@ TEST_CASE("colours are for terminals, or where they are asked for", "[cli][text]
     CHECK_FALSE(contains(run(folder, "info missing.obj --color never").err, escape));
     if (std::system("script --version > /dev/null 2>&1") != 0) return;
     const auto on_terminal = [&](const std::string& environment) {
-        const std::string command = "cd '" + folder.path.string() + "' && " + environment + " TERM=xterm script -qec \"'" + program() + "' info missing.obj\" typescript > /dev/null 2>&1 < /dev/null";
+        const std::string command = "cd '" + folder.path.string() + "' && " + environment + " TERM=xterm script -qec \"'" + program() +
+                                    "' info missing.obj\" typescript > /dev/null 2>&1 < /dev/null";
         CHECK(std::system(command.c_str()) != 0);
         return folder.read("typescript");
     };
@@ -555,7 +593,8 @@ TEST_CASE("per-vertex data passes through, or is solved like x, y, z", "[cli][ch
     CHECK(std::abs(solved[6] - given[6]) > 0.5);
     const Outcome colours = run(folder, "interpolate in.ply -o P.ply --channels colours --report -");
     CHECK(report_of(colours).at("parameters").at("channels") == json({"red", "green", "blue"}));
-    CHECK(report_of(run(folder, "interpolate in.ply -o P.ply --channels quality,blue --report -")).at("parameters").at("channels") == json({"quality", "blue"}));
+    CHECK(report_of(run(folder, "interpolate in.ply -o P.ply --channels quality,blue --report -")).at("parameters").at("channels") ==
+          json({"quality", "blue"}));
 }
 
 TEST_CASE("tags are refused, ignored with a warning, or carried to the output", "[cli][tags]") {
@@ -686,7 +725,8 @@ TEST_CASE("Ctrl-C is exit code 130 with nothing written", "[cli][exit]") {
     const Folder folder;
     folder.file("grid.obj", bumpy_grid(40));
     // one that iterates for minutes, one that waits for standard input
-    const std::vector<std::string> arguments = GENERATE(values<std::vector<std::string>>({{"grid.obj", "--solver", "pia", "--sweeps", "3000000"}, {"-", "--format", "obj"}}));
+    const std::vector<std::string> arguments =
+        GENERATE(values<std::vector<std::string>>({{"grid.obj", "--solver", "pia", "--sweeps", "3000000"}, {"-", "--format", "obj"}}));
     std::vector<std::string> words = {program(), "interpolate", "-o", "out.obj", "--report", "report.json"};
     words.insert(words.end(), arguments.begin(), arguments.end());
     const pid_t child = start(folder, words);
@@ -704,7 +744,8 @@ TEST_CASE("real meshes are interpolated to tolerance", "[cli][meshes]") {
     const char* meshes = std::getenv("LIMITCL_MESHES");
     if (meshes == nullptr) return;
     const Folder folder;
-    const std::string name = GENERATE(as<std::string>(), "boundary/cat_head.obj", "boundary/hemisphere.off", "boundary/stanford-bunny.obj.gz", "boundary/doorman.obj.gz", "boundary/compas_tubemesh.ply");
+    const std::string name = GENERATE(as<std::string>(), "boundary/cat_head.obj", "boundary/hemisphere.off", "boundary/stanford-bunny.obj.gz",
+                                      "boundary/doorman.obj.gz", "boundary/compas_tubemesh.ply");
     const std::string path = (fs::path(meshes) / name).string();
     if (!fs::exists(path)) return;
     const Outcome outcome = run(folder, "interpolate '" + path + "' -o P.obj --report -");

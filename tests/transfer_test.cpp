@@ -103,7 +103,7 @@ using AllTypes = std::tuple<Types<float, float>, Types<float, double>, Types<dou
 
 }  // namespace
 
-TEMPLATE_LIST_TEST_CASE("import and export meet the plain loop exactly", "[device][transfer]", AllTypes) {
+TEMPLATE_LIST_TEST_CASE("import and export meet the plain loop exactly", "[device][transfer][tiny]", AllTypes) {
     const lcl::DeviceInfo device = lcl::choose_device();
     if (TestType::needs_double() && !device.has_double) return;
     const auto context = Context::create(device);
@@ -119,7 +119,7 @@ TEMPLATE_LIST_TEST_CASE("import and export meet the plain loop exactly", "[devic
     check_round_trip(context, make_case<TestType>(65, 4, {6, 2, 4, 2}));
 }
 
-TEST_CASE("a double model far from the origin arrives in float rows as finely as one at the origin", "[device][transfer]") {
+TEST_CASE("a double model far from the origin arrives in float rows as finely as one at the origin", "[device][transfer][tiny]") {
     const lcl::DeviceInfo device = lcl::choose_device();
     if (!device.has_double) return;
     const auto context = Context::create(device);

@@ -33,7 +33,8 @@ std::vector<std::string> named_channels(const Job& job, lcl_mesh mesh) {
     std::vector<std::string> names;
     for (const std::string& name : split_names(job.options.channels)) {
         if (std::find(there.begin(), there.end(), name) == there.end())
-            fail(exit_usage, "--channels: " + shown_input(job.options) + " has no per-vertex data '" + name + "'; it has " + (there.empty() ? "none" : join(there, ", ")));
+            fail(exit_usage,
+                 "--channels: " + shown_input(job.options) + " has no per-vertex data '" + name + "'; it has " + (there.empty() ? "none" : join(there, ", ")));
         if (std::find(names.begin(), names.end(), name) != names.end()) fail(exit_usage, "--channels names '" + name + "' twice");
         names.push_back(name);
     }

@@ -31,8 +31,12 @@ lcl_device_info chosen_device(const Options& options) {
 std::string device_table(const std::vector<lcl_device_info>& devices) {
     std::vector<std::vector<std::string>> rows = {{"index", "type", "double", "memory", "units", "MHz", "platform", "version", "name"}};
     for (const lcl_device_info& device : devices) {
-        rows.push_back({std::to_string(device.index), device.is_gpu ? "gpu" : device.is_cpu ? "cpu" : "other", device.has_double ? "yes" : "no",
-            byte_text(device.memory_bytes), std::to_string(device.compute_units), std::to_string(device.clock_mhz), device.platform, device.version, device.name});
+        rows.push_back({std::to_string(device.index),
+                        device.is_gpu   ? "gpu"
+                        : device.is_cpu ? "cpu"
+                                        : "other",
+                        device.has_double ? "yes" : "no", byte_text(device.memory_bytes), std::to_string(device.compute_units),
+                        std::to_string(device.clock_mhz), device.platform, device.version, device.name});
     }
     return table_text(rows);
 }
@@ -41,8 +45,10 @@ std::string device_table(const std::vector<lcl_device_info>& devices) {
 
 void run_devices(Job& job) {
     job.report.devices.emplace();
-    if (lcl_device_count() > 0 && job.options.device.empty()) job.report.devices = all_devices();
-    else job.report.devices->push_back(chosen_device(job.options));  // with no device at all this fails, with the ways to install one
+    if (lcl_device_count() > 0 && job.options.device.empty())
+        job.report.devices = all_devices();
+    else
+        job.report.devices->push_back(chosen_device(job.options));  // with no device at all this fails, with the ways to install one
     if (job.options.report != "-") job.terminal.result(device_table(*job.report.devices));
 }
 

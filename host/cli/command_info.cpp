@@ -21,7 +21,11 @@ std::vector<DefectSummary> defects_of(lcl_mesh mesh) {
     for (int index = 0; index < lcl_mesh_defect_count(mesh); ++index) {
         lcl_defect defect = LCL_DEFECT_INIT;
         check(lcl_mesh_get_defect(mesh, index, &defect));
-        defects.push_back({defect.kind, defect.message, defect.count, {defect.vertices, defect.vertices + defect.vertex_count}, {defect.faces, defect.faces + defect.face_count}});
+        defects.push_back({defect.kind,
+                           defect.message,
+                           defect.count,
+                           {defect.vertices, defect.vertices + defect.vertex_count},
+                           {defect.faces, defect.faces + defect.face_count}});
     }
     return defects;
 }
@@ -44,7 +48,8 @@ SchemeSummary check_scheme(lcl_mesh mesh, const Options& options, lcl_scheme sch
 
 InfoSummary info_of(lcl_mesh mesh, const Options& options) {
     InfoSummary info;
-    for (const lcl_scheme scheme : {LCL_SCHEME_CATMULL_CLARK, LCL_SCHEME_LOOP, LCL_SCHEME_DOO_SABIN}) info.schemes.push_back(check_scheme(mesh, options, scheme));
+    for (const lcl_scheme scheme : {LCL_SCHEME_CATMULL_CLARK, LCL_SCHEME_LOOP, LCL_SCHEME_DOO_SABIN})
+        info.schemes.push_back(check_scheme(mesh, options, scheme));
     info.tags_ignored = notes_of(mesh, LCL_NOTE_IGNORED_TAG);
     info.unknown_statements = notes_of(mesh, LCL_NOTE_UNKNOWN_STATEMENT);
     info.refused_tag = join(notes_of(mesh, LCL_NOTE_REFUSED_TAG), "; ");
@@ -58,9 +63,7 @@ std::string histogram_text(const Histogram& histogram) {
     return parts.empty() ? "none" : join(parts, ", ");
 }
 
-std::string text_or_none(const std::string& text) {
-    return text.empty() ? "none" : text;
-}
+std::string text_or_none(const std::string& text) { return text.empty() ? "none" : text; }
 
 void add_topology_rows(Rows& rows, const MeshSummary& mesh, const InfoSummary& report) {
     const lcl_mesh_info& info = mesh.info;
@@ -87,8 +90,10 @@ void add_scheme_rows(Rows& rows, const InfoSummary& info) {
 std::string info_table(const Job& job, lcl_mesh mesh) {
     const MeshSummary& summary = *job.report.mesh;
     const InfoSummary& info = *job.report.info;
-    Rows rows = {{"file", shown_input(job.options)}, {"vertices", std::to_string(summary.info.vertices)}, {"faces", std::to_string(summary.info.faces)},
-        {"face degrees", histogram_text(summary.face_degrees)}};
+    Rows rows = {{"file", shown_input(job.options)},
+                 {"vertices", std::to_string(summary.info.vertices)},
+                 {"faces", std::to_string(summary.info.faces)},
+                 {"face degrees", histogram_text(summary.face_degrees)}};
     add_topology_rows(rows, summary, info);
     rows.push_back({"diagonal", short_number(summary.info.diagonal)});
     rows.push_back({"data", text_or_none(join(all_channels(mesh), ", "))});

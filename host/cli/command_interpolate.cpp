@@ -20,8 +20,8 @@ constexpr int most_residuals = 1 << 22;  // a longer history is cut: 32 MiB, wha
 /// What the progress line needs between two calls.
 struct SolveProgress {
     Progress* progress;
-    int sweeps;         ///< asked for, 0: until the tolerance
-    double first = 0.0; ///< residual of the first call
+    int sweeps;          ///< asked for, 0: until the tolerance
+    double first = 0.0;  ///< residual of the first call
 };
 
 double fraction_done(SolveProgress& state, std::int32_t iteration, double residual, double target) {
@@ -55,15 +55,13 @@ lcl_solve_options solve_options(const Options& options, SolveProgress& state) {
     solve.max_iterations = options.max_iterations;
     solve.exact_sweeps = options.sweeps;
     solve.keep_going = options.keep_going || options.sweeps > 0;  // exactly so many sweeps, whatever they give
-    solve.certify = !options.report.empty();  // the bound may cost some ten short solves: for those who read it
+    solve.certify = !options.report.empty();                      // the bound may cost some ten short solves: for those who read it
     solve.progress = on_progress;
     solve.progress_user = &state;
     return solve;
 }
 
-bool is_result(lcl_status status) {
-    return status == LCL_ERROR_SINGULAR || status == LCL_ERROR_INDEFINITE || status == LCL_ERROR_NOT_CONVERGED;
-}
+bool is_result(lcl_status status) { return status == LCL_ERROR_SINGULAR || status == LCL_ERROR_INDEFINITE || status == LCL_ERROR_NOT_CONVERGED; }
 
 /// The sentence and the places are in the solve's report too; the last error has them where that is empty.
 Failure failure_of_result(lcl_status status, const lcl_solve_report& report) {
@@ -132,9 +130,11 @@ void say_solve(Job& job, std::size_t further_channels) {
     const double diagonal = job.report.mesh->info.diagonal;
     job.terminal.say("solved", std::string(solver_name(report.solver)) + ", " + counted(report.iterations, "iteration", "iterations") + ", " +
                                    precision_name(job.options.precision) + " precision: " + (report.converged ? "converged" : "not converged"));
-    if (!residuals.empty()) job.terminal.say("residual", error_text(residuals.front(), diagonal) + " before, " + error_text(report.max_error, diagonal) + " after");
+    if (!residuals.empty())
+        job.terminal.say("residual", error_text(residuals.front(), diagonal) + " before, " + error_text(report.max_error, diagonal) + " after");
     if (further_channels > 0) job.terminal.say("channels", "largest residual " + short_number(report.channel_error) + " of their ranges");
-    if (std::isfinite(report.surface_error_bound)) job.terminal.say("surface", "at most " + error_text(report.surface_error_bound, diagonal) + " from the exact one");
+    if (std::isfinite(report.surface_error_bound))
+        job.terminal.say("surface", "at most " + error_text(report.surface_error_bound, diagonal) + " from the exact one");
 }
 
 }  // namespace

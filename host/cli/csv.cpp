@@ -96,9 +96,7 @@ void add_row(Table& table, std::string_view line, int number) {
 
 }  // namespace
 
-void fail_at(const std::string& path, int line, const std::string& text) {
-    fail(exit_bad_input, path + ":" + std::to_string(line) + ": " + text);
-}
+void fail_at(const std::string& path, int line, const std::string& text) { fail(exit_bad_input, path + ":" + std::to_string(line) + ": " + text); }
 
 Table read_table(const std::string& path, const std::string& header) {
     Table table;
@@ -157,9 +155,7 @@ OutputFile::~OutputFile() {
     std::remove(temporary_.c_str());
 }
 
-void OutputFile::fail_to_write() const {
-    fail(exit_error, path_ + ": cannot be written: " + std::strerror(errno));
-}
+void OutputFile::fail_to_write() const { fail(exit_error, path_ + ": cannot be written: " + std::strerror(errno)); }
 
 void OutputFile::write(const std::string& text) {
     if (std::fwrite(text.data(), 1, text.size(), file_) != text.size()) fail_to_write();

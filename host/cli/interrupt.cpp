@@ -11,9 +11,7 @@ namespace {
 
 volatile std::sig_atomic_t interrupt_flag = 0;
 
-void on_interrupt(int) {
-    interrupt_flag = 1;
-}
+void on_interrupt(int) { interrupt_flag = 1; }
 
 }  // namespace
 
@@ -25,9 +23,7 @@ void watch_signals() {
     std::signal(SIGPIPE, SIG_IGN);
 }
 
-bool interrupted() {
-    return interrupt_flag != 0;
-}
+bool interrupted() { return interrupt_flag != 0; }
 
 void check_interrupt() {
     if (interrupted()) throw failure_of(LCL_ERROR_CANCELLED);

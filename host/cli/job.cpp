@@ -18,8 +18,10 @@ namespace {
 
 void log_to_terminal(void* user, std::int32_t level, const char* message) {
     Job& job = *static_cast<Job*>(user);
-    if (level <= LCL_LOG_WARNING) warn(job, message);
-    else job.terminal.log(message);
+    if (level <= LCL_LOG_WARNING)
+        warn(job, message);
+    else
+        job.terminal.log(message);
 }
 
 /// Standard input is read here: a pipe may let wait for ever, and Ctrl-C has to end that.
@@ -80,7 +82,8 @@ void note_boundary(Job& job, lcl_mesh mesh) {
 
 void require_precision(const Job& job, const lcl_device_info& device) {
     if (job.options.precision != LCL_PRECISION_DOUBLE || device.has_double) return;
-    fail(exit_device, std::string("the device '") + device.name + "' has no double precision: take --precision mixed, or another --device (`limitcl devices` lists them)");
+    fail(exit_device,
+         std::string("the device '") + device.name + "' has no double precision: take --precision mixed, or another --device (`limitcl devices` lists them)");
 }
 
 }  // namespace
@@ -111,9 +114,7 @@ std::string of_input(const Job& job, const std::string& message) {
     return message.find(name) == std::string::npos ? name + ": " + message : message;
 }
 
-void add_seconds(double& phase, double seconds) {
-    phase += std::max(seconds, 0.0);
-}
+void add_seconds(double& phase, double seconds) { phase += std::max(seconds, 0.0); }
 
 void warn(Job& job, const std::string& text) {
     auto& warnings = job.report.warnings;
@@ -132,9 +133,12 @@ Mesh read_input(Job& job) {
         const Phase phase(job, &Seconds::read, "reading " + shown_input(job.options));
         mesh = read_mesh(job.options);
     }
-    add_features(job, mesh.get());
-    job.report.mesh = summary_of(mesh.get());
-    note_boundary(job, mesh.get());
+    {
+        const Phase phase(job, &Seconds::topology, "checking the mesh");
+        add_features(job, mesh.get());
+        job.report.mesh = summary_of(mesh.get());
+        note_boundary(job, mesh.get());
+    }
     job.report.scheme = scheme_name(default_scheme(job.options, mesh.get()));
     say_mesh(job, mesh.get());
     warn_of_notes(job, mesh.get());
@@ -202,17 +206,17 @@ void write_output(Job& job, lcl_mesh mesh) {
         check(lcl_mesh_write(mesh, job.options.output.c_str(), job.options.output == "-" ? job.options.format : LCL_FORMAT_BY_ENDING));
     }
     warn_of_notes(job, mesh);
-    job.terminal.say("wrote", shown + ": " + counted(lcl_mesh_vertex_count(mesh), "vertex", "vertices") + ", " + counted(lcl_mesh_face_count(mesh), "face", "faces"));
+    job.terminal.say("wrote",
+                     shown + ": " + counted(lcl_mesh_vertex_count(mesh), "vertex", "vertices") + ", " + counted(lcl_mesh_face_count(mesh), "face", "faces"));
 }
 
-std::string shown_input(const Options& options) {
-    return options.input == "-" ? "standard input" : options.input;
-}
+std::string shown_input(const Options& options) { return options.input == "-" ? "standard input" : options.input; }
 
 void say_seconds(Job& job) {
     const Seconds& seconds = job.report.seconds;
-    const std::pair<const char*, double> phases[] = {{"read", seconds.read}, {"topology", seconds.topology}, {"compile", seconds.compile},
-        {"upload", seconds.upload}, {"solve", seconds.solve}, {"download", seconds.download}, {"write", seconds.write}, {"total", seconds.total}};
+    const std::pair<const char*, double> phases[] = {{"read", seconds.read},     {"topology", seconds.topology}, {"compile", seconds.compile},
+                                                     {"upload", seconds.upload}, {"solve", seconds.solve},       {"download", seconds.download},
+                                                     {"write", seconds.write},   {"total", seconds.total}};
     std::vector<std::string> parts;
     for (const auto& [name, value] : phases) {
         if (value > 0.0) parts.push_back(std::string(name) + " " + short_number(value));

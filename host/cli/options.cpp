@@ -26,8 +26,9 @@ const Names<lcl_mask> mask_names = {{"catmull", LCL_MASK_CATMULL}, {"classic", L
 const Names<lcl_boundary> boundary_names = {
     {"edge-and-corner", LCL_BOUNDARY_EDGE_AND_CORNER}, {"edge-only", LCL_BOUNDARY_EDGE_ONLY}, {"fixed", LCL_BOUNDARY_FIXED}};
 const Names<lcl_precision> precision_names = {{"single", LCL_PRECISION_SINGLE}, {"mixed", LCL_PRECISION_MIXED}, {"double", LCL_PRECISION_DOUBLE}};
-const Names<lcl_solver> solver_names = {{"auto", LCL_SOLVER_AUTO}, {"pia", LCL_SOLVER_PIA}, {"wpia", LCL_SOLVER_WPIA}, {"jacobi", LCL_SOLVER_JACOBI},
-    {"gs", LCL_SOLVER_GS}, {"gs-coloured", LCL_SOLVER_GS_COLOURED}, {"chebyshev", LCL_SOLVER_CHEBYSHEV}, {"cg", LCL_SOLVER_CG}};
+const Names<lcl_solver> solver_names = {{"auto", LCL_SOLVER_AUTO},           {"pia", LCL_SOLVER_PIA}, {"wpia", LCL_SOLVER_WPIA},
+                                        {"jacobi", LCL_SOLVER_JACOBI},       {"gs", LCL_SOLVER_GS},   {"gs-coloured", LCL_SOLVER_GS_COLOURED},
+                                        {"chebyshev", LCL_SOLVER_CHEBYSHEV}, {"cg", LCL_SOLVER_CG}};
 const Names<lcl_format> format_names = {
     {"obj", LCL_FORMAT_OBJ}, {"off", LCL_FORMAT_OFF}, {"ply", LCL_FORMAT_PLY}, {"stl", LCL_FORMAT_STL}, {"om", LCL_FORMAT_OM}};
 
@@ -69,9 +70,7 @@ std::optional<double> to_number(const std::string& text) {
     return value;
 }
 
-bool is_fraction(double value) {
-    return value >= 0.0 && value <= 1.0;
-}
+bool is_fraction(double value) { return value >= 0.0 && value <= 1.0; }
 
 void set_alpha(Options& options, const std::string& text) {
     options.alpha_auto = text == "auto";
@@ -84,8 +83,10 @@ void set_alpha(Options& options, const std::string& text) {
 void set_lambda(Options& options, const std::string& text) {
     const std::optional<double> lambda = to_number(text);
     if (lambda && !is_fraction(*lambda)) throw CLI::ValidationError("--lambda", "'" + text + "' is not between 0 and 1");
-    if (lambda) options.lambda = *lambda;
-    else options.lambda_file = text;
+    if (lambda)
+        options.lambda = *lambda;
+    else
+        options.lambda_file = text;
 }
 
 CLI::Validator positive_number() {
@@ -121,7 +122,8 @@ void refuse_standard_output(const std::string& flag, const std::string& path) {
 
 class Parser {
 public:
-    explicit Parser(Options& options) : options_(options), app_("Control meshes whose subdivision limit surface passes exactly through given vertices.", "limitcl") {
+    explicit Parser(Options& options)
+        : options_(options), app_("Control meshes whose subdivision limit surface passes exactly through given vertices.", "limitcl") {
         app_.fallthrough();  // before the commands are added, which inherit it: options may stand before or after the command's name
         app_.require_subcommand(0, 1);
         app_.set_version_flag("--version", version_text, "Version, build, OpenCL platforms, file formats");
@@ -160,7 +162,8 @@ private:
 };
 
 std::string Parser::version_text() {
-    std::string text = std::string("limitcl ") + lcl_version_string() + "\n" + lcl_build_string() + "\nfile formats: .obj .off .ply .stl .om, each also with .gz\n";
+    std::string text =
+        std::string("limitcl ") + lcl_version_string() + "\n" + lcl_build_string() + "\nfile formats: .obj .off .ply .stl .om, each also with .gz\n";
     std::set<std::string> platforms;
     for (int index = 0; index < lcl_device_count(); ++index) {
         lcl_device_info info = LCL_DEVICE_INFO_INIT;
@@ -174,45 +177,64 @@ std::string Parser::version_text() {
 
 void Parser::add_scheme_options() {
     add_choice(app_, "--scheme", options_.scheme, scheme_names, "Default: loop if all faces are triangles, else catmull-clark")->group(scheme_group);
-    app_.add_option_function<std::string>("--alpha", [this](const std::string& text) { set_alpha(options_, text); },
-            "Catmull-Clark parameter, 0 to 1 (default 0); auto: 0, or 0.5 where 0 is singular or nearly so")->type_name("A|auto")->group(scheme_group);
+    app_.add_option_function<std::string>(
+            "--alpha", [this](const std::string& text) { set_alpha(options_, text); },
+            "Catmull-Clark parameter, 0 to 1 (default 0); auto: 0, or 0.5 where 0 is singular or nearly so")
+        ->type_name("A|auto")
+        ->group(scheme_group);
     add_choice(app_, "--mask", options_.mask, mask_names, "Doo-Sabin mask (default catmull)")->group(scheme_group);
-    app_.add_option_function<std::string>("--lambda", [this](const std::string& text) { set_lambda(options_, text); },
-            "Two-phase blend ratio, 0 to 1 (default 0), or a CSV with header vertex,lambda")->type_name("L|FILE")->group(scheme_group);
+    app_.add_option_function<std::string>(
+            "--lambda", [this](const std::string& text) { set_lambda(options_, text); },
+            "Two-phase blend ratio, 0 to 1 (default 0), or a CSV with header vertex,lambda")
+        ->type_name("L|FILE")
+        ->group(scheme_group);
     add_choice(app_, "--boundary", options_.boundary, boundary_names,
-            "Default edge-and-corner: boundary curves, and vertices with one face are corners; fixed: every boundary vertex is a corner")->group(scheme_group);
+               "Default edge-and-corner: boundary curves, and vertices with one face are corners; fixed: every boundary vertex is a corner")
+        ->group(scheme_group);
     app_.add_option("--creases", options_.creases_file, "Sharp edges, `v0 v1` a line")->type_name("FILE")->group(scheme_group);
     app_.add_option("--corners", options_.corners_file, "Vertices that stay, one a line")->type_name("FILE")->group(scheme_group);
-    app_.add_option("--crease-angle", options_.crease_angle, "Edges whose face normals differ by more are sharp")->check(angle())->type_name("DEG")->group(scheme_group);
+    app_.add_option("--crease-angle", options_.crease_angle, "Edges whose face normals differ by more are sharp")
+        ->check(angle())
+        ->type_name("DEG")
+        ->group(scheme_group);
 }
 
 void Parser::add_solve_options() {
     add_choice(app_, "--precision", options_.precision, precision_names, "Default mixed: float sweeps, residuals and corrections in more")->group(solve_group);
     app_.add_option("--tol", options_.tolerance, "Largest residual, relative to the bounding box's diagonal (default 1e-6)")
-        ->check(positive_number())->type_name("T")->group(solve_group);
+        ->check(positive_number())
+        ->type_name("T")
+        ->group(solve_group);
     app_.add_option("--max-iter", options_.max_iterations, "Iterations at most (default 200)")->check(count_from(1))->type_name("N")->group(solve_group);
-    app_.add_flag("--keep-going", options_.keep_going, "Write what there is although the result is singular, indefinite or not converged (exit code 4 all the same)")
+    app_.add_flag("--keep-going", options_.keep_going,
+                  "Write what there is although the result is singular, indefinite or not converged (exit code 4 all the same)")
         ->group(solve_group);
     app_.add_option("--channels", options_.channels, "Per-vertex data treated like x, y, z: none (default), colours, all, or names")
-        ->type_name("none|colours|all|NAME,..")->group(solve_group);
+        ->type_name("none|colours|all|NAME,..")
+        ->group(solve_group);
     add_choice(app_, "--format", options_.format, format_names, "Format of standard input or output")->group(solve_group);
 }
 
 void Parser::add_run_options() {
     app_.add_option("--device", options_.device, "Index, part of a name, cpu or gpu (default: LIMITCL_DEVICE, else the fastest GPU, else the CPU)")
-        ->type_name("SPEC")->group(run_group);
+        ->type_name("SPEC")
+        ->group(run_group);
     app_.add_option("--report", options_.report, "JSON report; `-`: standard output")->type_name("FILE")->group(run_group);
     app_.add_flag("--quiet", options_.quiet, "Standard error stays empty but for the one line of a failure")->group(run_group);
     app_.add_flag("-v,--verbose", options_.verbosity, "Say more; twice: still more")->group(run_group);
     app_.add_flag("--no-progress", options_.no_progress, "No progress line on a terminal")->group(run_group);
     app_.add_option("--color", options_.color, "Default auto: on a terminal, unless NO_COLOR is set")
-        ->check(CLI::IsMember({"auto", "always", "never"}).description(""))->type_name("auto|always|never")->group(run_group);
+        ->check(CLI::IsMember({"auto", "always", "never"}).description(""))
+        ->type_name("auto|always|never")
+        ->group(run_group);
 }
 
 CLI::App* Parser::add_command(const char* name, const char* text, bool reads_mesh, bool writes_mesh) {
     CLI::App* command = app_.add_subcommand(name, text)->group("Commands");
-    if (reads_mesh) command->add_option("IN", options_.input, "Mesh: .obj .off .ply .stl .om, also .gz; `-`: standard input (needs --format)")->type_name("")->required();
-    if (writes_mesh) command->add_option("-o,--output", options_.output, "Mesh to write, may be IN; `-`: standard output (needs --format)")->type_name("OUT")->required();
+    if (reads_mesh)
+        command->add_option("IN", options_.input, "Mesh: .obj .off .ply .stl .om, also .gz; `-`: standard input (needs --format)")->type_name("")->required();
+    if (writes_mesh)
+        command->add_option("-o,--output", options_.output, "Mesh to write, may be IN; `-`: standard output (needs --format)")->type_name("OUT")->required();
     command->footer([this, reads_mesh] { return common_help(reads_mesh); });
     return command;
 }
@@ -271,10 +293,12 @@ std::string Parser::common_help(bool reads_mesh) const {
 
 void Parser::refuse_what_is_not_there() const {
     for (const char* name : later_commands) {
-        if (options_.command == name) fail(exit_usage, std::string("this version does not have '") + name + "' yet; `limitcl --help` lists the commands it has");
+        if (options_.command == name)
+            fail(exit_usage, std::string("this version does not have '") + name + "' yet; `limitcl --help` lists the commands it has");
     }
     for (const CLI::Option* option : later_options_) {
-        if (option->count() > 0) fail(exit_usage, "this version does not have " + options_.command + " --" + option->get_lnames().front() + " yet; leave the option out");
+        if (option->count() > 0)
+            fail(exit_usage, "this version does not have " + options_.command + " --" + option->get_lnames().front() + " yet; leave the option out");
     }
 }
 
@@ -317,7 +341,8 @@ void Parser::check_command() const {
         return;
     }
     check_files();
-    if (options_.command == "refine" && options_.levels == 0 && !options_.limit) fail(exit_usage, "--levels 0 changes nothing without --limit: add it, or give a level from 1");
+    if (options_.command == "refine" && options_.levels == 0 && !options_.limit)
+        fail(exit_usage, "--levels 0 changes nothing without --limit: add it, or give a level from 1");
 }
 
 std::optional<int> Parser::parse(int argc, char** argv) {
@@ -339,28 +364,16 @@ std::optional<int> Parser::parse(int argc, char** argv) {
 
 }  // namespace
 
-std::optional<int> parse_options(int argc, char** argv, Options& options) {
-    return Parser(options).parse(argc, argv);
-}
+std::optional<int> parse_options(int argc, char** argv, Options& options) { return Parser(options).parse(argc, argv); }
 
-const char* scheme_name(lcl_scheme scheme) {
-    return name_of(scheme_names, scheme);
-}
+const char* scheme_name(lcl_scheme scheme) { return name_of(scheme_names, scheme); }
 
-const char* mask_name(lcl_mask mask) {
-    return name_of(mask_names, mask);
-}
+const char* mask_name(lcl_mask mask) { return name_of(mask_names, mask); }
 
-const char* boundary_name(lcl_boundary boundary) {
-    return name_of(boundary_names, boundary);
-}
+const char* boundary_name(lcl_boundary boundary) { return name_of(boundary_names, boundary); }
 
-const char* precision_name(lcl_precision precision) {
-    return name_of(precision_names, precision);
-}
+const char* precision_name(lcl_precision precision) { return name_of(precision_names, precision); }
 
-const char* solver_name(lcl_solver solver) {
-    return name_of(solver_names, solver);
-}
+const char* solver_name(lcl_solver solver) { return name_of(solver_names, solver); }
 
 }  // namespace lcl::cli

@@ -13,9 +13,9 @@ struct Options {
     std::string command;
 
     // files
-    std::string input, output;  ///< "-": standard streams
+    std::string input, output;                 ///< "-": standard streams
     lcl_format format = LCL_FORMAT_BY_ENDING;  ///< of standard streams
-    std::string report;         ///< empty: none; "-": standard output
+    std::string report;                        ///< empty: none; "-": standard output
 
     // scheme and sharp features
     lcl_scheme scheme = LCL_SCHEME_DEFAULT;  ///< as given, or as --alpha, --lambda, --mask choose it
@@ -23,7 +23,7 @@ struct Options {
     bool alpha_auto = false;
     lcl_mask mask = LCL_MASK_CATMULL;
     double lambda = 0.0;
-    std::string lambda_file;    ///< not empty: one ratio a vertex, rules over lambda
+    std::string lambda_file;  ///< not empty: one ratio a vertex, rules over lambda
     lcl_boundary boundary = LCL_BOUNDARY_DEFAULT;
     std::string creases_file, corners_file;
     double crease_angle = 0.0;  ///< degrees, 0: none
@@ -34,7 +34,7 @@ struct Options {
     int max_iterations = 200;
     bool keep_going = false;
     std::string channels = "none";
-    std::string device;         ///< empty: the library's default
+    std::string device;  ///< empty: the library's default
 
     // text
     bool quiet = false;
@@ -45,7 +45,7 @@ struct Options {
     // interpolate
     lcl_solver solver = LCL_SOLVER_AUTO;
     std::string subset_file;
-    int sweeps = 0;             ///< 0: until the tolerance is met
+    int sweeps = 0;  ///< 0: until the tolerance is met
 
     // refine
     int levels = 1;

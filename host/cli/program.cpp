@@ -16,8 +16,8 @@ namespace {
 
 using Command = void (*)(Job&);
 
-const std::map<std::string, Command> commands = {{"devices", run_devices}, {"selftest", run_selftest}, {"info", run_info},
-    {"interpolate", run_interpolate}, {"limit", run_limit}, {"refine", run_refine}};
+const std::map<std::string, Command> commands = {{"devices", run_devices},         {"selftest", run_selftest}, {"info", run_info},
+                                                 {"interpolate", run_interpolate}, {"limit", run_limit},       {"refine", run_refine}};
 
 int end_with(Job& job, const Failure& failure) {
     job.report.status = failure.status;

@@ -13,13 +13,9 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-Json number_or_null(double value) {
-    return std::isfinite(value) ? Json(value) : Json(nullptr);
-}
+Json number_or_null(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 
-Json where_json(const std::vector<std::int32_t>& vertices, const std::vector<std::int32_t>& faces) {
-    return {{"vertices", vertices}, {"faces", faces}};
-}
+Json where_json(const std::vector<std::int32_t>& vertices, const std::vector<std::int32_t>& faces) { return {{"vertices", vertices}, {"faces", faces}}; }
 
 Json histogram_json(const Histogram& histogram) {
     Json json = Json::object();
@@ -28,9 +24,13 @@ Json histogram_json(const Histogram& histogram) {
 }
 
 Json mesh_json(const MeshSummary& mesh) {
-    const std::pair<const char*, std::int32_t> counts[] = {{"vertices", mesh.info.vertices}, {"faces", mesh.info.faces}, {"edges", mesh.info.edges},
-        {"boundary_edges", mesh.info.boundary_edges}, {"boundary_loops", mesh.info.boundary_loops}, {"components", mesh.info.components},
-        {"isolated_vertices", mesh.info.isolated_vertices}};
+    const std::pair<const char*, std::int32_t> counts[] = {{"vertices", mesh.info.vertices},
+                                                           {"faces", mesh.info.faces},
+                                                           {"edges", mesh.info.edges},
+                                                           {"boundary_edges", mesh.info.boundary_edges},
+                                                           {"boundary_loops", mesh.info.boundary_loops},
+                                                           {"components", mesh.info.components},
+                                                           {"isolated_vertices", mesh.info.isolated_vertices}};
     Json json = Json::object();
     for (const auto& [name, count] : counts) {
         if (count >= 0) json[name] = count;
@@ -86,14 +86,28 @@ void add_info(Json& json, const InfoSummary& info) {
 }
 
 Json device_json(const lcl_device_info& device) {
-    return {{"index", device.index}, {"platform", device.platform}, {"name", device.name}, {"version", device.version}, {"vendor", device.vendor},
-        {"driver", device.driver}, {"type", device.is_gpu ? "gpu" : device.is_cpu ? "cpu" : "other"}, {"double", device.has_double != 0},
-        {"compute_units", device.compute_units}, {"clock_mhz", device.clock_mhz}, {"memory_bytes", device.memory_bytes},
-        {"max_allocation_bytes", device.max_allocation_bytes}};
+    return {{"index", device.index},
+            {"platform", device.platform},
+            {"name", device.name},
+            {"version", device.version},
+            {"vendor", device.vendor},
+            {"driver", device.driver},
+            {"type", device.is_gpu   ? "gpu"
+                     : device.is_cpu ? "cpu"
+                                     : "other"},
+            {"double", device.has_double != 0},
+            {"compute_units", device.compute_units},
+            {"clock_mhz", device.clock_mhz},
+            {"memory_bytes", device.memory_bytes},
+            {"max_allocation_bytes", device.max_allocation_bytes}};
 }
 
 Json kernel_json(const KernelCheck& check) {
-    return {{"kernel", check.kernel}, {"what", check.what}, {"difference", number_or_null(check.difference)}, {"tolerance", check.tolerance}, {"passed", check.passed}};
+    return {{"kernel", check.kernel},
+            {"what", check.what},
+            {"difference", number_or_null(check.difference)},
+            {"tolerance", check.tolerance},
+            {"passed", check.passed}};
 }
 
 void add_lists(Json& json, const Report& report) {
@@ -108,8 +122,8 @@ void add_lists(Json& json, const Report& report) {
 }
 
 Json seconds_json(const Seconds& seconds) {
-    return {{"read", seconds.read}, {"topology", seconds.topology}, {"compile", seconds.compile}, {"upload", seconds.upload}, {"solve", seconds.solve},
-        {"download", seconds.download}, {"write", seconds.write}, {"total", seconds.total}};
+    return {{"read", seconds.read},   {"topology", seconds.topology}, {"compile", seconds.compile}, {"upload", seconds.upload},
+            {"solve", seconds.solve}, {"download", seconds.download}, {"write", seconds.write},     {"total", seconds.total}};
 }
 
 }  // namespace
@@ -125,8 +139,8 @@ void Report::set_parameter(const std::string& name, Parameter value) {
 }
 
 std::string to_json(const Report& report) {
-    Json json = {{"limitcl", lcl_version_string()}, {"command", report.command}, {"status", report.status}, {"message", report.message},
-        {"warnings", report.warnings}, {"where", where_json(report.vertices, report.faces)}};
+    Json json = {{"limitcl", lcl_version_string()}, {"command", report.command},   {"status", report.status},
+                 {"message", report.message},       {"warnings", report.warnings}, {"where", where_json(report.vertices, report.faces)}};
     if (report.device) json["device"] = {{"platform", report.device->platform}, {"name", report.device->name}, {"version", report.device->version}};
     if (report.mesh) {
         json["mesh"] = mesh_json(*report.mesh);

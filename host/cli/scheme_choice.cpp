@@ -21,7 +21,8 @@ std::vector<double> read_lambda(const std::string& path, std::int32_t vertex_cou
     return lambda;
 }
 
-void require_suitable(const Job& job, lcl_mesh mesh, const lcl_scheme_options& options) {
+void require_suitable(Job& job, lcl_mesh mesh, const lcl_scheme_options& options) {
+    const Phase phase(job, &Seconds::topology, "checking the scheme");
     lcl_suitability suitability = LCL_SUITABILITY_INIT;
     check_of_input(job, lcl_mesh_check_scheme(mesh, &options, &suitability));
     if (suitability.suitable) return;
@@ -67,10 +68,14 @@ void note_scheme(Job& job, const lcl_scheme_options& scheme) {
     job.report.scheme = scheme_name(scheme.scheme);
     if (scheme.scheme == LCL_SCHEME_DOO_SABIN) job.report.set_parameter("mask", std::string(mask_name(scheme.mask)));
     if (scheme.scheme != LCL_SCHEME_CATMULL_CLARK) return;
-    if (scheme.alpha_auto) job.report.set_parameter("alpha", std::string("auto"));
-    else job.report.set_parameter("alpha", scheme.alpha);
-    if (job.options.lambda_file.empty()) job.report.set_parameter("lambda", scheme.lambda);
-    else job.report.set_parameter("lambda", job.options.lambda_file);
+    if (scheme.alpha_auto)
+        job.report.set_parameter("alpha", std::string("auto"));
+    else
+        job.report.set_parameter("alpha", scheme.alpha);
+    if (job.options.lambda_file.empty())
+        job.report.set_parameter("lambda", scheme.lambda);
+    else
+        job.report.set_parameter("lambda", job.options.lambda_file);
 }
 
 void note_scheme_in_use(Job& job, lcl_operator A) {

@@ -27,7 +27,9 @@ bool wants_colour(const std::string& mode, int descriptor) {
 }  // namespace
 
 Terminal::Terminal(const Options& options)
-    : quiet_(options.quiet), colour_error_(wants_colour(options.color, STDERR_FILENO)), colour_result_(wants_colour(options.color, STDOUT_FILENO)),
+    : quiet_(options.quiet),
+      colour_error_(wants_colour(options.color, STDERR_FILENO)),
+      colour_result_(wants_colour(options.color, STDOUT_FILENO)),
       progress_(!options.quiet && !options.no_progress && is_terminal(STDERR_FILENO)) {}
 
 void Terminal::say(const std::string& label, const std::string& text) {
@@ -83,15 +85,15 @@ std::string short_number(double value) {
     return text;
 }
 
-std::string counted(long long count, const char* one, const char* many) {
-    return std::to_string(count) + " " + (count == 1 ? one : many);
-}
+std::string counted(long long count, const char* one, const char* many) { return std::to_string(count) + " " + (count == 1 ? one : many); }
 
 std::string byte_text(unsigned long long bytes) {
     char text[32];
     const double mebibytes = static_cast<double>(bytes) / 1048576.0;
-    if (mebibytes >= 1024.0) std::snprintf(text, sizeof text, "%.1f GiB", mebibytes / 1024.0);
-    else std::snprintf(text, sizeof text, "%.0f MiB", mebibytes);
+    if (mebibytes >= 1024.0)
+        std::snprintf(text, sizeof text, "%.1f GiB", mebibytes / 1024.0);
+    else
+        std::snprintf(text, sizeof text, "%.0f MiB", mebibytes);
     return text;
 }
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <string>
 
 #include "host/parallel.h"
 
@@ -26,6 +27,10 @@ Transform fit_transform(const Plan& plan, const double* values, std::size_t stri
     for (Index row = plan.isolated_count; row < plan.vertex_count; ++row) {
         const double* value = values + static_cast<std::size_t>(plan.vertex_of_row[row]) * stride;
         for (int c = 0; c < channels; ++c) {
+            if (!std::isfinite(value[c])) {
+                const Index v = plan.vertex_of_row[row];
+                throw BadInput("channel " + std::to_string(c) + " of vertex " + std::to_string(v) + " is not finite: correct or leave out the value", {{v}, {}});
+            }
             low[c] = std::min(low[c], value[c]);
             high[c] = std::max(high[c], value[c]);
         }

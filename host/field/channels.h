@@ -22,7 +22,7 @@ struct Transform {
 };
 
 /// Positions: centre and inverse diagonal of the bounding box; further channels: middle and inverse range. 1 where a range is 0. Isolated vertices are left out.
-/// values: row v of `stride` doubles belongs to vertex v.
+/// BadInput for a value that is not finite. values: row v of `stride` doubles belongs to vertex v.
 Transform fit_transform(const Plan& plan, const double* values, std::size_t stride, int channels);
 
 /// Values in the plan's order, transformed: vertex_count x channels. Isolated vertices, which may be anywhere, become 0.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "host/solve/monitor.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace lcl {
@@ -19,9 +20,18 @@ void Monitor::begin_stage(Target target, int limit) {
     best_iteration_ = iteration_;
 }
 
+void Monitor::begin_with(const ResidualNorms& residual) {
+    if (is_exact_) {
+        exact_start_ = residual.position;
+        return;
+    }
+    history_ = {residual.position};
+    iteration_ = 1;
+}
+
 void Monitor::replace_last(const ResidualNorms& residual) {
-    if (history_.empty()) history_.push_back(residual.position);
-    history_.back() = residual.position;
+    history_.resize(std::max<std::size_t>(1, history_.size()));
+    if (iteration_ > 0 || exact_start_ < 0) history_.back() = residual.position;
 }
 
 bool Monitor::has_stalled(double size) {
@@ -34,7 +44,7 @@ bool Monitor::has_stalled(double size) {
 
 bool Monitor::stop(const ResidualNorms& residual) {
     history_.resize(iteration_ + 1);
-    history_.back() = residual.position;
+    history_.back() = iteration_ == 0 && exact_start_ >= 0 ? exact_start_ : residual.position;
     const double size = residual.position + residual.others;
     if (first_ < 0) first_ = size;
     if (progress_ && !progress_(iteration_, residual.position, target_.position)) throw Cancelled("the solve was cancelled after " + std::to_string(iteration_) + " iterations");

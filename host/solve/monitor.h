@@ -33,6 +33,8 @@ public:
     void begin_stage(Target target, int limit = -1);
     /// Takes the residual of the iterate after iteration() iterations; true if the stage is over, and outcome() says why.
     bool stop(const ResidualNorms& residual);
+    /// The residual of P_0, where a direct solve of corners and curves comes before the iterations: it counts as the first of them, unless their number is exact.
+    void begin_with(const ResidualNorms& residual);
     /// One more iteration was made.
     void advance() { ++iteration_; }
 
@@ -58,6 +60,7 @@ private:
     std::vector<double> history_;
     double first_ = -1, best_ = -1;
     int best_iteration_ = 0;
+    double exact_start_ = -1;  // E_0 before the direct solve, kept as the first of an exact number
 };
 
 }  // namespace lcl

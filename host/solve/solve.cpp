@@ -39,14 +39,15 @@ public:
     }
 
     /// Curves and corners are solved before, and the device iterates on what is left.
-    bool solves_curves_first() const { return part_.first_row > system_.plan().curves.first_row; }
+    bool solves_curves_first() const { return part_.first_row > system_.plan().curves.first_row && !is_refused(); }
     Solver solver() const { return solver_; }
     Monitor& monitor() { return *monitor_; }
     SolveReport& report() { return report_; }
 
     void run(const Field& m, Field& x) {
         if (is_refused()) return measure(m, x);
-        if (part_.row_count == 0 || is_done_at_once(m, x)) return;
+        if (is_done_at_once(m, x)) return;
+        if (part_.row_count == 0) return count_idle_sweeps(m, x);
         if (x.real() == Real::wide) iterate_mixed(m, x);
         else iterate(m, x);
         A_.context().finish();
@@ -106,6 +107,12 @@ private:
         monitor_->begin_stage({}, 0);
         monitor_->stop(residual(m, x));
         monitor_->set_outcome(Outcome::exhausted);
+    }
+
+    /// Corners and curves are all there is, and they are solved.
+    void count_idle_sweeps(const Field& m, const Field& x) {
+        const ResidualNorms norms = residual(m, x);
+        for (monitor_->begin_stage({}); !monitor_->stop(norms);) monitor_->advance();
     }
 
     bool is_done_at_once(const Field& m, const Field& x) {
@@ -273,6 +280,7 @@ SolveReport solve_host(LimitSystem& system, const double* M, std::size_t stride,
     const std::vector<double> m = to_plan_order(plan, transform, M, stride, channels);
     std::vector<double> p = warm_start ? to_plan_order(plan, transform, P, P_stride, channels) : m;
     if (solve.solves_curves_first()) {
+        solve.monitor().begin_with(host_residual(plan, m, p, channels));
         std::copy_n(m.begin(), static_cast<std::size_t>(plan.fixed.row_count) * channels, p.begin());
         solve_curves(plan, m, p, channels);
     }
@@ -293,7 +301,7 @@ SolveReport solve_host(LimitSystem& system, const double* M, std::size_t stride,
     from_plan_order(plan, transform, p, channels, P, P_stride);
     restore_rows(plan, kept, channels, P, P_stride);
     solve.judge(norms);
-    if (options.certify && report.status == SolveStatus::converged) report.surface_error_bound = error_bound(system, report.max_error);
+    if (options.certify && (report.status == SolveStatus::converged || report.status == SolveStatus::not_converged)) report.surface_error_bound = error_bound(system, report.max_error);
     report.seconds_upload = seconds_upload;
     report.seconds_download = seconds_since(download_start);
     return report;
@@ -307,6 +315,9 @@ SolveReport solve_fields(LimitSystem& system, const Field& M, const Transform& t
     Solve solve(system, options, 1 / transform.scale[0]);
     if (!warm_start) P.copy_from(M);
     if (solve.solves_curves_first()) {
+        Field r = A.make_field(M.channels(), M.real());
+        A.sweep({0, 1, 0, 0}, M, P, nullptr, r, plan.all_rows());
+        solve.monitor().begin_with(A.norms(P, plan.all_rows()));
         const Index rows = plan.curves.end_row();
         std::vector<double> m(static_cast<std::size_t>(rows) * M.channels());
         M.download(m.data(), 0, rows);
@@ -334,7 +345,7 @@ SolveReport solve_fields(LimitSystem& system, const Field& M, const Transform& t
     SolveReport& report = solve.conclude();
     report.seconds_solve = seconds_since(start);
     solve.judge(norms);
-    if (options.certify && report.status == SolveStatus::converged) report.surface_error_bound = error_bound(system, report.max_error);
+    if (options.certify && (report.status == SolveStatus::converged || report.status == SolveStatus::not_converged)) report.surface_error_bound = error_bound(system, report.max_error);
     return report;
 }
 

@@ -351,7 +351,7 @@ typedef struct lcl_solve_report {
     uint32_t struct_size;
     lcl_solver solver;          /**< the one that ran */
     int32_t converged;          /**< max_error <= tolerance x diagonal */
-    int32_t iterations;
+    int32_t iterations;         /**< AUTO, CHEBYSHEV and CG solve corners and curves directly first: that counts as the first iteration (not among exact_sweeps) */
     double* residuals;          /**< caller's array or NULL: E_0 .. E_iterations, E_k = max_i |M - A P_k|_i over x, y, z, model units */
     size_t residual_capacity;   /**< its size */
     size_t residual_count;      /**< iterations + 1 */
