@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Rows of the limit operator against brute-force subdivision, and what holds for all of them.
+#include <cmath>
 #include <map>
 
 #include <catch2/catch.hpp>
@@ -15,6 +16,7 @@ namespace {
 
 // The oracle is right to 2e-14 a weight; a row of ours sums at most some 100 products, each rounded once.
 constexpr double tolerance = 3e-14;
+const double pi = std::acos(-1.0);
 
 Eigen::MatrixXd rows_of(const Prepared& mesh, const SchemeOptions& scheme, const std::vector<std::uint8_t>& subset = {}) {
     const std::vector<std::uint8_t> owned;
@@ -33,7 +35,7 @@ Eigen::MatrixXd oracle_rows(const shapes::Shape& shape, const SchemeOptions& sch
 shapes::Shape prism(int sides) {
     std::vector<shapes::Point> points;
     std::vector<shapes::Face> faces(2);
-    for (int i = 0; i < 2 * sides; ++i) points.push_back({std::cos(2 * M_PI * i / sides), std::sin(2 * M_PI * i / sides), i < sides ? -1.0 : 1.0});
+    for (int i = 0; i < 2 * sides; ++i) points.push_back({std::cos(2 * pi * i / sides), std::sin(2 * pi * i / sides), i < sides ? -1.0 : 1.0});
     for (int i = 0; i < sides; ++i) {
         faces[0].insert(faces[0].begin(), i);
         faces[1].push_back(sides + i);
@@ -48,7 +50,7 @@ shapes::Shape bipyramid(int n) {
     std::vector<shapes::Face> faces;
     for (int i = 0; i < n; ++i) {
         const int a = 2 + i, b = 2 + (i + 1) % n;
-        points.push_back({std::cos(2 * M_PI * i / n), std::sin(2 * M_PI * i / n), 0});
+        points.push_back({std::cos(2 * pi * i / n), std::sin(2 * pi * i / n), 0});
         faces.push_back({0, a, b});
         faces.push_back({1, b, a});
     }

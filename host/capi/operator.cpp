@@ -10,8 +10,7 @@ using namespace lcl;
 namespace lcl {
 namespace {
 
-constexpr double auto_alpha = 0.5;           // the mesh expansion paper's choice
-constexpr double auto_alpha_threshold = 0.05;  // of lambda_min
+constexpr double auto_alpha = 0.5;  // the mesh expansion paper's choice
 
 void check_ratio(double value, const std::string& name) {
     if (!(value >= 0 && value <= 1)) throw InvalidArgument(name + " is " + std::to_string(value) + ", it goes from 0 to 1");
@@ -32,7 +31,7 @@ Scheme resolve(const lcl_mesh_s& mesh, const lcl_scheme_options& options) {
 
 bool wants_other_alpha(LimitSystem& system) {
     const Spectrum& spectrum = spectrum_of(system);
-    return spectrum.singular || spectrum.indefinite || spectrum.smooth < auto_alpha_threshold;
+    return spectrum.singular || spectrum.indefinite || spectrum.smooth < near_singular;
 }
 
 }  // namespace
@@ -142,7 +141,7 @@ lcl_status lcl_operator_diagnose(lcl_operator A, lcl_diagnosis* diagnosis) {
         out.lambda_min_estimate = spectrum.estimate;
         out.singular = spectrum.singular;
         out.indefinite = spectrum.indefinite;
-        copy_text(out.reason, spectrum.message);
+        copy_text(out.reason, spectrum.message.empty() ? spectrum.warning : spectrum.message);
         out.vertex_count = copy_first(out.vertices, spectrum.vertices);
         give(diagnosis, out, "diagnosis");
         return LCL_OK;

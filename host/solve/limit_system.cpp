@@ -2,6 +2,19 @@
 #include "host/solve/limit_system.h"
 
 namespace lcl {
+namespace {
+
+void find_weakest(const Topology& topology, const Features& features, LimitSystem& system) {
+    for (Index v = 0; v < topology.vertex_count; ++v) {
+        const int n = topology.vertex_face_count[v];
+        if (features.kind[v] != VertexKind::smooth || (system.lowest_valence > 0 && n > system.lowest_valence)) continue;
+        if (n != system.lowest_valence) system.weakest.clear();
+        system.lowest_valence = n;
+        if (system.weakest.size() < 10) system.weakest.push_back(v);
+    }
+}
+
+}  // namespace
 
 std::unique_ptr<LimitSystem> make_limit_system(std::shared_ptr<Context> context, const PolygonMesh& mesh, const Topology& topology, const Features& features, const SchemeOptions& scheme,
                                                PlanOptions plan_options) {
@@ -13,8 +26,7 @@ std::unique_ptr<LimitSystem> make_limit_system(std::shared_ptr<Context> context,
     system->scheme = scheme;
     system->diagonal = bounding_box_diagonal(mesh);
     system->singular = find_singular_component(topology, features, scheme, plan_options.subset);
-    for (Index v = 0; v < topology.vertex_count && system->valence_2.size() < 10; ++v)
-        if (features.kind[v] == VertexKind::smooth && topology.vertex_face_count[v] < 3) system->valence_2.push_back(v);
+    find_weakest(topology, features, *system);
     auto plan = std::make_shared<const Plan>(build_plan(mesh, topology, features, scheme, plan_options));
     system->A = std::make_unique<DeviceOperator>(std::move(context), std::move(plan), shape.group);
     return system;

@@ -10,13 +10,16 @@
 
 namespace lcl {
 
+constexpr double near_singular = 0.05;  ///< smallest eigenvalue below which a warning is given and alpha auto takes 0.5
+
 /// What is known of the eigenvalues.
 struct Spectrum {
     double bound = 0;         ///< proven lower bound; NaN where none is known
     double estimate = 0;      ///< of lambda_min, never below the bound; NaN where A is not self-adjoint (darts)
     double smooth = 0;        ///< estimate for the smooth block alone: what Chebyshev and W-PIA are set to
     bool singular = false, indefinite = false;
-    std::string message;      ///< one sentence with the cure; empty if all is well
+    std::string message;      ///< one sentence with the cure where singular or indefinite; else empty
+    std::string warning;      ///< one sentence where lambda_min is so small that interpolation exaggerates noise; else empty
     std::vector<Index> vertices;
 };
 
@@ -29,7 +32,8 @@ struct LimitSystem {
     SchemeOptions scheme;
     double diagonal = 0;  ///< of the mesh's bounding box, model units
     Objection singular;   ///< find_singular_component's
-    std::vector<Index> valence_2; ///< smooth vertices with fewer than three faces, the first ten
+    int lowest_valence = 0;       ///< of the smooth vertices, 0 without any
+    std::vector<Index> weakest;   ///< smooth vertices of that valence, the first ten: where small eigenvalues come from
     std::unique_ptr<DeviceOperator> A;
 
     std::optional<Spectrum> spectrum;        // filled by spectrum_of

@@ -72,13 +72,16 @@ public:
         report_.max_error = final_norms.position * unit_;
         report_.channel_error = final_norms.others;
         const bool converged = report_.max_error <= options_.tolerance * diagonal && report_.channel_error <= options_.tolerance;
-        report_.status = spectrum.indefinite || (monitor_->outcome() == Outcome::indefinite && !converged) ? SolveStatus::indefinite
-                         : spectrum.singular                                                               ? SolveStatus::singular
-                         : converged                                                                       ? SolveStatus::converged
-                                                                                                           : SolveStatus::not_converged;
+        const Plan& plan = system_.plan();
+        const bool nothing_proven = plan.has_darts() || std::isnan(plan.lambda_min_bound);
+        const bool failed = monitor_->outcome() == Outcome::indefinite || (monitor_->outcome() == Outcome::diverged && nothing_proven && options_.solver == Solver::automatic);
+        report_.status = spectrum.indefinite || (failed && !converged) ? SolveStatus::indefinite
+                         : spectrum.singular                           ? SolveStatus::singular
+                         : converged                                   ? SolveStatus::converged
+                                                                       : SolveStatus::not_converged;
         if (report_.status == SolveStatus::converged) return;
         report_.message = spectrum.message.empty() ? reason() : spectrum.message;
-        report_.vertices = spectrum.message.empty() ? system_.valence_2 : spectrum.vertices;
+        report_.vertices = spectrum.message.empty() ? system_.weakest : spectrum.vertices;
     }
 
 private:

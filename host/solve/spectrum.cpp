@@ -59,14 +59,18 @@ void judge(const LimitSystem& system, Spectrum& spectrum) {
         spectrum.estimate = spectrum.smooth = 0;
         return;
     }
-    if (spectrum.smooth > rounding) return;
-    spectrum.indefinite = spectrum.smooth < -rounding;
-    spectrum.singular = !spectrum.indefinite;
-    spectrum.vertices = system.valence_2;
+    if (spectrum.smooth >= near_singular) return;
     const std::string value = std::to_string(spectrum.smooth);
-    const std::string where = system.valence_2.empty() ? "" : " (vertex " + std::to_string(system.valence_2[0]) + " has valence 2)";
-    spectrum.message = spectrum.indefinite ? "the limit operator is indefinite, it has the eigenvalue " + value + where + ", and no iteration is sure to converge: " + cure(system.scheme.scheme)
-                                           : "the limit operator is singular to working precision, its smallest eigenvalue is about " + value + where + ": " + cure(system.scheme.scheme);
+    const std::string where = system.weakest.empty() ? "" : " (vertex " + std::to_string(system.weakest[0]) + " has valence " + std::to_string(system.lowest_valence) + ")";
+    spectrum.vertices = system.weakest;
+    spectrum.indefinite = spectrum.smooth < -rounding;
+    spectrum.singular = !spectrum.indefinite && spectrum.smooth <= rounding;
+    if (spectrum.indefinite)
+        spectrum.message = "the limit operator is indefinite, it has the eigenvalue " + value + where + ", and no iteration is sure to converge: " + cure(system.scheme.scheme);
+    else if (spectrum.singular)
+        spectrum.message = "the limit operator is singular to working precision, its smallest eigenvalue is about " + value + where + ": " + cure(system.scheme.scheme);
+    else
+        spectrum.warning = "the limit operator is nearly singular, its smallest eigenvalue is about " + value + where + ", so noise in the vertices is exaggerated: " + cure(system.scheme.scheme);
 }
 
 }  // namespace

@@ -310,7 +310,7 @@ typedef struct lcl_diagnosis {
     double lambda_min_bound;    /**< proven lower bound of the smallest eigenvalue; NaN where none is known (darts, valence 2) */
     double lambda_min_estimate; /**< from a short Lanczos run on the device, never below the bound; NaN where A is not self-adjoint (darts) */
     int32_t singular, indefinite;
-    char reason[512];           /**< one sentence with the cure; "" if all is well */
+    char reason[512];           /**< one sentence with the cure, also where A is only nearly singular (estimate below 0.05); "" if all is well */
     int32_t vertices[10], vertex_count;
 } lcl_diagnosis;
 #define LCL_DIAGNOSIS_INIT { (uint32_t)sizeof(lcl_diagnosis), 0.0, 0.0, 0, 0, "", { 0 }, 0 }
