@@ -27,8 +27,8 @@ if(LIMITCL_WERROR AND NOT LIMITCL_SANITIZE)  # gcc's flow warnings are unreliabl
     add_compile_options(-Werror)
 endif()
 if(LIMITCL_SANITIZE)
-    # -O1 keeps the suite quick; a finding stops the program, so that a test cannot pass over it.
-    add_compile_options(-fsanitize=${LIMITCL_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer -O1)
+    # -O1 keeps the suite quick, -g1 (lines) the build; a finding stops the program, so that a test cannot pass over it.
+    add_compile_options(-fsanitize=${LIMITCL_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer -O1 -g1)
     add_compile_options($<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized>)
     add_link_options(-fsanitize=${LIMITCL_SANITIZE})
 endif()

@@ -1,12 +1,14 @@
 # SPDX-License-Identifier: BSD-3-Clause
-# limitcl_embed_kernels(<variable> <file>...): puts the text of kernel files, and of the headers that they include by `#include "x.cl.h"`, into C++ sources that are
-# made at build time, so that an edit rebuilds them. <variable> gets the list of generated sources, which define lcl::embedded_kernels() (host/device/embedded_kernels.h). The same file, run by `cmake -P`, is the generator:
-# it writes arrays of bytes, because string literals have a length limit and quoting rules.
+# limitcl_embed_kernels(<variable> <file>...): puts the text of kernel files, and of the headers that they include by `#include "x.cl.h"`, into C++ sources
+# that are made at build time, so that an edit rebuilds them. <variable> gets the list of generated sources, which define lcl::embedded_kernels()
+# (host/device/embedded_kernels.h). The same file, run by `cmake -P`, is the generator: it writes arrays of bytes, because string literals have
+# a length limit and quoting rules.
 if(CMAKE_SCRIPT_MODE_FILE)
     file(READ "${INPUT}" bytes HEX)
     string(REGEX REPLACE "(................................)" "\\1\n    " bytes "${bytes}")  # 16 bytes a line
     string(REGEX REPLACE "([0-9a-f][0-9a-f])" "0x\\1," bytes "${bytes}")
-    file(WRITE "${OUTPUT}" "// Made from kernels/${NAME}.\nnamespace lcl {\nextern const unsigned char ${SYMBOL}[];\nextern const unsigned long ${SYMBOL}_size;\n"
+    file(WRITE "${OUTPUT}" "// Made from kernels/${NAME}.\nnamespace lcl {\n"
+        "extern const unsigned char ${SYMBOL}[];\nextern const unsigned long ${SYMBOL}_size;\n"
         "const unsigned char ${SYMBOL}[] = {\n    ${bytes}0};\nconst unsigned long ${SYMBOL}_size = sizeof ${SYMBOL} - 1;\n}  // namespace lcl\n")
     return()
 endif()

@@ -2,7 +2,8 @@
 // Caller's points to rows of the device and back:
 //     row_i = (x_{order[i]} - centre) * scale,    x_{order[i]} = row_i * inverse_scale + centre,    channel by channel.
 // The difference comes before anything is rounded to LCL_REAL, so that models far from the origin lose nothing but what their own numbers lack.
-// One work-item owns row i and, on the way back, the caller's row order[i]: `order` names each of the caller's rows at most once, so no two write the same element.
+// One work-item owns row i and, on the way back, the caller's row order[i]: `order` names each of the caller's rows at most once, so no two work-items write
+// the same element.
 // Every element is computed on its own: the same bits on every run.
 //
 // LCL_REAL    element of the device's rows: float (default) or double
@@ -39,8 +40,9 @@ typedef float lcl_wide;
 // frame     3 x LCL_WIDTH, read: centre, scale, inverse scale of each component; powers of two as scales keep the round trip exact
 // source    the caller's array, read: row r at offset + r * stride
 // rows      count x LCL_WIDTH, written
-__kernel void lcl_import_points(const uint count, const ulong stride, const ulong offset, const uint first, const uint channels, __global const int* restrict order,
-                                __constant lcl_wide* frame, __global const LCL_SOURCE* restrict source, __global LCL_REAL* restrict rows) {
+__kernel void lcl_import_points(const uint count, const ulong stride, const ulong offset, const uint first, const uint channels,
+                                __global const int* restrict order, __constant lcl_wide* frame,
+                                __global const LCL_SOURCE* restrict source, __global LCL_REAL* restrict rows) {
     const size_t i = get_global_id(0);
     if (i >= count) return;
     __global const LCL_SOURCE* from = source + offset + (ulong)order[i] * stride + first;
@@ -49,9 +51,11 @@ __kernel void lcl_import_points(const uint count, const ulong stride, const ulon
     }
 }
 
-// The arguments of lcl_import_points, with the last two changed: rows are read, target is written, at the taken channels of the rows in `order` and nowhere else.
-__kernel void lcl_export_points(const uint count, const ulong stride, const ulong offset, const uint first, const uint channels, __global const int* restrict order,
-                                __constant lcl_wide* frame, __global const LCL_REAL* restrict rows, __global LCL_SOURCE* restrict target) {
+// The arguments of lcl_import_points, with the last two changed: rows are read; target is written, at the taken channels of the rows in `order` and nowhere
+// else.
+__kernel void lcl_export_points(const uint count, const ulong stride, const ulong offset, const uint first, const uint channels,
+                                __global const int* restrict order, __constant lcl_wide* frame,
+                                __global const LCL_REAL* restrict rows, __global LCL_SOURCE* restrict target) {
     const size_t i = get_global_id(0);
     if (i >= count) return;
     __global LCL_SOURCE* to = target + offset + (ulong)order[i] * stride + first;

@@ -2,6 +2,7 @@
 // What the tests of the C API share: handles that release themselves, meshes from named shapes, and checks that show the library's sentence.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <memory>
@@ -76,6 +77,7 @@ struct MeshArrays {
     std::vector<int32_t> degrees, vertices;
     lcl_mesh_data data = LCL_MESH_DATA_INIT;
 
+    MeshArrays(const MeshArrays&) = delete;
     explicit MeshArrays(const lcl::PolygonMesh& mesh) : vertices(mesh.face_vertices) {
         for (lcl::Index f = 0; f < mesh.face_count(); ++f) degrees.push_back(mesh.degree(f));
         data.vertex_count = mesh.vertex_count;
@@ -87,8 +89,9 @@ struct MeshArrays {
 };
 
 inline Mesh make_mesh(const lcl::PolygonMesh& polygons) {
+    const MeshArrays arrays(polygons);
     lcl_mesh mesh = nullptr;
-    succeed(lcl_mesh_create(&MeshArrays(polygons).data, &mesh));
+    succeed(lcl_mesh_create(&arrays.data, &mesh));
     return Mesh(mesh);
 }
 

@@ -39,11 +39,12 @@ struct Layout {
 inline lcl::Event transfer(lcl::Context& context, cl_kernel kernel, std::size_t count, const Layout& layout, const lcl::Buffer& order, const lcl::Buffer& frame,
                            const lcl::Buffer& from, const lcl::Buffer& to) {
     const std::size_t local = 64;
-    return launch(context, kernel, {(count + local - 1) / local * local, local}, static_cast<cl_uint>(count), layout.stride, layout.offset, layout.first, layout.channels, order,
-                  frame, from, to);
+    return launch(context, kernel, {(count + local - 1) / local * local, local}, static_cast<cl_uint>(count), layout.stride, layout.offset, layout.first,
+                  layout.channels, order, frame, from, to);
 }
 
-template <class Array> lcl::Buffer upload(const std::shared_ptr<lcl::Context>& context, const Array& values, const std::string& what) {
+template <class Array>
+lcl::Buffer upload(const std::shared_ptr<lcl::Context>& context, const Array& values, const std::string& what) {
     const std::size_t bytes = values.size() * sizeof values[0];
     lcl::Buffer buffer(context, bytes, what);
     context->write(buffer, 0, bytes, values.data(), "writing " + what);

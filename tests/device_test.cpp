@@ -21,6 +21,13 @@ using lcl::list_devices;
 
 namespace {
 
+/// The list, which the tests need something in.
+std::vector<DeviceInfo> devices_here() {
+    std::vector<DeviceInfo> devices = list_devices();
+    REQUIRE_FALSE(devices.empty());
+    return devices;
+}
+
 std::string upper(std::string text) {
     for (char& c : text) c = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
     return text;
@@ -113,8 +120,7 @@ bool imports_rightly(Context& context, int rounds) {
 }  // namespace
 
 TEST_CASE("every listed device has its index, a name and memory", "[device][list]") {
-    const std::vector<DeviceInfo> devices = list_devices();
-    REQUIRE_FALSE(devices.empty());
+    const std::vector<DeviceInfo> devices = devices_here();
     for (std::size_t i = 0; i < devices.size(); ++i) {
         CHECK(devices[i].index == static_cast<int>(i));
         CHECK_FALSE(devices[i].name.empty());
@@ -129,11 +135,11 @@ TEST_CASE("every listed device has its index, a name and memory", "[device][list
 }
 
 TEST_CASE("a device is chosen by index", "[device][choose]") {
-    for (const DeviceInfo& device : list_devices()) CHECK(choose_device(std::to_string(device.index)).id == device.id);
+    for (const DeviceInfo& device : devices_here()) CHECK(choose_device(std::to_string(device.index)).id == device.id);
 }
 
 TEST_CASE("a device is chosen by part of its name or platform in any case, the first that matches", "[device][choose]") {
-    const std::vector<DeviceInfo> devices = list_devices();
+    const std::vector<DeviceInfo> devices = devices_here();
     for (const DeviceInfo& device : devices) {
         const auto first_with = [&](const std::string DeviceInfo::*text) {
             return std::find_if(devices.begin(), devices.end(), [&](const DeviceInfo& other) {
@@ -148,7 +154,7 @@ TEST_CASE("a device is chosen by part of its name or platform in any case, the f
 }
 
 TEST_CASE("cpu and gpu choose by type, in any case", "[device][choose]") {
-    const std::vector<DeviceInfo> devices = list_devices();
+    const std::vector<DeviceInfo> devices = devices_here();
     const auto cpu = std::find_if(devices.begin(), devices.end(), [](const DeviceInfo& device) { return device.is_cpu; });
     if (cpu != devices.end()) {
         CHECK(choose_device("cpu").id == cpu->id);
@@ -168,7 +174,7 @@ TEST_CASE("cpu and gpu choose by type, in any case", "[device][choose]") {
 }
 
 TEST_CASE("without a wish LIMITCL_DEVICE decides, else the device is a GPU if there is one", "[device][choose]") {
-    const std::vector<DeviceInfo> devices = list_devices();
+    const std::vector<DeviceInfo> devices = devices_here();
     for (const DeviceInfo& device : devices) {
         const Environment wish("LIMITCL_DEVICE", std::to_string(device.index).c_str());
         CHECK(choose_device().id == device.id);
@@ -181,7 +187,7 @@ TEST_CASE("without a wish LIMITCL_DEVICE decides, else the device is a GPU if th
 }
 
 TEST_CASE("a device that is not there: what was asked for, what there is, and both ways to install one", "[device][choose]") {
-    const std::vector<DeviceInfo> devices = list_devices();
+    const std::vector<DeviceInfo> devices = devices_here();
     for (const std::string spec : {"no such device", "12345", "99999999999999999999999999", "-1"}) {
         const std::string sentence = error_of<lcl::NoDevice>([&] { choose_device(spec); });
         INFO(sentence);
@@ -204,7 +210,8 @@ TEST_CASE("errors carry OpenCL's own name, the code, the call and what was being
         CHECK(error.code == -5);
         CHECK(std::string(error.what()) == "clFinish failed with CL_OUT_OF_RESOURCES (-5) while waiting for the end");
     }
-    for (const int code : {CL_MEM_OBJECT_ALLOCATION_FAILURE, CL_OUT_OF_HOST_MEMORY, CL_INVALID_BUFFER_SIZE}) CHECK_THROWS_AS(lcl::check(code, "f", "x"), lcl::OutOfMemory);
+    for (const int code : {CL_MEM_OBJECT_ALLOCATION_FAILURE, CL_OUT_OF_HOST_MEMORY, CL_INVALID_BUFFER_SIZE})
+        CHECK_THROWS_AS(lcl::check(code, "f", "x"), lcl::OutOfMemory);
     CHECK(std::string(lcl::opencl_error_name(CL_BUILD_PROGRAM_FAILURE)) == "CL_BUILD_PROGRAM_FAILURE");
     CHECK(std::string(lcl::opencl_error_name(-1001)) == "CL_PLATFORM_NOT_FOUND_KHR");
     CHECK(contains(lcl::opencl_error_name(-9999), "OpenCL"));
@@ -455,7 +462,7 @@ TEST_CASE("two threads with a context each use one device at once", "[device][th
 }
 
 TEST_CASE("all devices work at once, from one thread and from one thread each", "[device][thread]") {
-    const std::vector<DeviceInfo> devices = list_devices();
+    const std::vector<DeviceInfo> devices = devices_here();
     std::atomic<std::size_t> right{0};
     std::vector<std::thread> threads;
     for (const DeviceInfo& device : devices) threads.emplace_back([&right, device] { right += imports_rightly(*Context::create(device), 20); });

@@ -15,17 +15,22 @@ using lcl::Context;
 
 namespace {
 
-template <class Real_, class Source_> struct Types {
+template <class Real_, class Source_>
+struct Types {
     using Real = Real_;
     using Source = Source_;
     using Wide = std::conditional_t<std::is_same_v<Real, double> || std::is_same_v<Source, double>, double, float>;
     static bool needs_double() { return std::is_same_v<Wide, double>; }
 };
 
-template <class T> const char* name_of() { return std::is_same_v<T, double> ? "double" : "float"; }
+template <class T>
+const char* name_of() {
+    return std::is_same_v<T, double> ? "double" : "float";
+}
 
 /// A caller's array with what surrounds it, the order of its rows, and the centre and scale of each channel.
-template <class T> struct Case {
+template <class T>
+struct Case {
     std::size_t count, width;
     Layout layout;
     std::vector<typename T::Source> array;
@@ -36,7 +41,8 @@ template <class T> struct Case {
     bool has(std::size_t k) const { return k < layout.channels; }
 };
 
-template <class T> Case<T> make_case(std::size_t count, std::size_t width, const Layout& layout) {
+template <class T>
+Case<T> make_case(std::size_t count, std::size_t width, const Layout& layout) {
     std::mt19937 random(7);
     std::uniform_real_distribution<double> coordinate(-3, 3);
     Case<T> made{count, width, layout, {}, std::vector<cl_int>(count), {}};
@@ -52,7 +58,8 @@ template <class T> Case<T> make_case(std::size_t count, std::size_t width, const
     return made;
 }
 
-template <class T> std::vector<typename T::Real> plain_import(const Case<T>& c) {
+template <class T>
+std::vector<typename T::Real> plain_import(const Case<T>& c) {
     std::vector<typename T::Real> rows(c.count * c.width, 0);
     for (std::size_t i = 0; i < c.count; ++i) {
         for (std::size_t k = 0; k < c.width && c.has(k); ++k) {
@@ -63,7 +70,8 @@ template <class T> std::vector<typename T::Real> plain_import(const Case<T>& c) 
     return rows;
 }
 
-template <class T> void plain_export(const Case<T>& c, const std::vector<typename T::Real>& rows, std::vector<typename T::Source>& target) {
+template <class T>
+void plain_export(const Case<T>& c, const std::vector<typename T::Real>& rows, std::vector<typename T::Source>& target) {
     for (std::size_t i = 0; i < c.count; ++i) {
         for (std::size_t k = 0; k < c.width && c.has(k); ++k) {
             const typename T::Wide scaled = static_cast<typename T::Wide>(rows[i * c.width + k]) * c.frame[2 * c.width + k];
@@ -72,9 +80,12 @@ template <class T> void plain_export(const Case<T>& c, const std::vector<typenam
     }
 }
 
-template <class T> void check_round_trip(const std::shared_ptr<Context>& context, const Case<T>& c) {
-    const std::string options = std::string("-D LCL_REAL=") + name_of<typename T::Real>() + " -D LCL_SOURCE=" + name_of<typename T::Source>() + " -D LCL_WIDTH=" + std::to_string(c.width);
-    INFO(options << ", " << c.count << " rows, stride " << c.layout.stride << ", offset " << c.layout.offset << ", channels " << c.layout.first << " + " << c.layout.channels);
+template <class T>
+void check_round_trip(const std::shared_ptr<Context>& context, const Case<T>& c) {
+    const std::string options = std::string("-D LCL_REAL=") + name_of<typename T::Real>() + " -D LCL_SOURCE=" + name_of<typename T::Source>() +
+                                " -D LCL_WIDTH=" + std::to_string(c.width);
+    INFO(options << ", " << c.count << " rows, stride " << c.layout.stride << ", offset " << c.layout.offset << ", channels " << c.layout.first << " + "
+                 << c.layout.channels);
     const Buffer order = device_test::upload(context, c.order, "order"), frame = device_test::upload(context, c.frame, "frame");
     const Buffer source = device_test::upload(context, c.array, "source");
     const std::vector<typename T::Real> expected_rows = plain_import(c);

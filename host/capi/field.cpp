@@ -94,6 +94,7 @@ lcl_status lcl_field_upload(lcl_field field, const void* values, lcl_type type, 
         check_type(type, stride, inner.channels());
         const Plan& plan = field->A->system->plan();
         const std::vector<double> rows = read_rows(required(values, "values"), type, stride, inner.channels(), plan.vertex_count);
+        require_finite(rows.data(), inner.channels(), inner.channels(), plan.vertex_count, "values");
         if (!field->transform) field->transform = fit_transform(plan, rows.data(), inner.channels(), inner.channels());
         inner.upload(to_plan_order(plan, *field->transform, rows.data(), inner.channels(), inner.channels()).data(), 0, plan.vertex_count);
         return LCL_OK;

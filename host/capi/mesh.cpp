@@ -57,6 +57,13 @@ BoundaryRule lcl_mesh_s::boundary_rule() const {
     return file.tags.interpolate_boundary == 2 ? BoundaryRule::edge_only : BoundaryRule::edge_and_corner;
 }
 
+void lcl_mesh_s::forget_positions() {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    defects_.reset();
+    const auto is_finite = [](double value) { return std::isfinite(value); };
+    if (!std::all_of(file.mesh.positions.begin(), file.mesh.positions.end(), is_finite)) topology_.reset();  // no longer sound
+}
+
 void lcl_mesh_s::forget_features() {
     const std::lock_guard<std::mutex> lock(mutex_);
     topology_.reset();
@@ -105,11 +112,16 @@ void set_output_tags(lcl_mesh_s& mesh) {
     tags.interpolate_boundary = mesh.boundary_rule() == BoundaryRule::edge_only ? 2 : -1;
 }
 
+std::size_t point_stride(std::size_t stride, const char* name) {
+    if (stride != 0 && stride < 3) throw InvalidArgument(std::string(name) + " is " + std::to_string(stride) + ", a point has 3 values");
+    return stride == 0 ? 3 : stride;
+}
+
 template <class T> double value_at(const void* points, std::size_t place) { return static_cast<double>(static_cast<const T*>(points)[place]); }
 
 void copy_points(const lcl_mesh_data& data, std::vector<double>& positions) {
-    const std::size_t stride = data.point_stride == 0 ? 3 : data.point_stride;
-    if (stride < 3) throw InvalidArgument("data.point_stride is " + std::to_string(stride) + ", a point has 3 values");
+    const std::size_t stride = point_stride(data.point_stride, "data.point_stride");
+    if (data.point_type != LCL_TYPE_DOUBLE && data.point_type != LCL_TYPE_FLOAT) throw InvalidArgument("data.point_type is " + std::to_string(data.point_type) + ", it is 0 (double) or 1 (float)");
     const auto read = data.point_type == LCL_TYPE_FLOAT ? &value_at<float> : &value_at<double>;
     positions.resize(static_cast<std::size_t>(data.vertex_count) * 3);
     for (std::size_t i = 0; i < positions.size(); ++i) positions[i] = read(data.points, i / 3 * stride + i % 3);
@@ -140,6 +152,7 @@ VertexProperty* property_at(lcl_mesh mesh, int32_t index) {
 
 std::map<Index, Index> histogram(lcl_mesh_s& mesh, lcl_histogram which) {
     std::map<Index, Index> counts;
+    if (which != LCL_HISTOGRAM_FACE_DEGREES && which != LCL_HISTOGRAM_VALENCES) throw InvalidArgument("which is " + std::to_string(which) + ", it is 0 (face degrees) or 1 (valences)");
     if (which == LCL_HISTOGRAM_FACE_DEGREES) {
         for (Index f = 0; f < mesh.file.mesh.face_count(); ++f) ++counts[mesh.file.mesh.degree(f)];
         return counts;
@@ -254,7 +267,7 @@ lcl_status lcl_mesh_get_faces(lcl_mesh mesh, int32_t* face_degrees, int32_t* fac
 lcl_status lcl_mesh_get_points(lcl_mesh mesh, double* points, size_t stride) {
     return guarded([&] {
         const PolygonMesh& polygons = required(mesh, "mesh")->file.mesh;
-        const std::size_t step = stride == 0 ? 3 : stride;
+        const std::size_t step = point_stride(stride, "stride");
         for (Index v = 0; v < polygons.vertex_count; ++v) std::copy_n(&polygons.positions[3 * static_cast<std::size_t>(v)], 3, required(points, "points") + v * step);
         return LCL_OK;
     });
@@ -264,9 +277,10 @@ lcl_status lcl_mesh_set_points(lcl_mesh mesh, const double* points, size_t strid
     return guarded([&] {
         if (required(mesh, "mesh")->feature_options.crease_angle_degrees > 0) mesh->features();  // found on the points as they were
         PolygonMesh& polygons = mesh->file.mesh;
-        const std::size_t step = stride == 0 ? 3 : stride;
+        const std::size_t step = point_stride(stride, "stride");
         for (Index v = 0; v < polygons.vertex_count; ++v) std::copy_n(required(points, "points") + v * step, 3, &polygons.positions[3 * static_cast<std::size_t>(v)]);
         mesh->file.normals.clear();
+        mesh->forget_positions();
         return LCL_OK;
     });
 }
@@ -397,9 +411,10 @@ lcl_status lcl_mesh_set_property(lcl_mesh mesh, const char* name, const double* 
     return guarded([&] {
         std::vector<VertexProperty>& properties = required(mesh, "mesh")->file.properties;
         const std::string wanted = required(name, "name");
+        required(values, "values");
         auto found = std::find_if(properties.begin(), properties.end(), [&](const VertexProperty& p) { return p.name == wanted; });
         if (found == properties.end()) found = properties.insert(properties.end(), {wanted, VertexProperty::Kind::scalar, "double", {}});
-        found->values.assign(required(values, "values"), values + mesh->file.mesh.vertex_count);
+        found->values.assign(values, values + mesh->file.mesh.vertex_count);
         return LCL_OK;
     });
 }

@@ -56,8 +56,9 @@ Buffer frame(const lcl_field_s& field, const ChannelBlock& block, bool as_double
     }
     const std::vector<float> narrow(values.begin(), values.end());
     Buffer buffer(field.A->context->context, values.size() * sizeof(double), "centre and scale of a field");
-    field.field.context().write(buffer, 0, values.size() * (as_double ? sizeof(double) : sizeof(float)), as_double ? static_cast<const void*>(values.data()) : narrow.data(),
-                                "uploading the centre and scale of a field");
+    const void* const from = as_double ? static_cast<const void*>(values.data()) : narrow.data();
+    // Beside the kernels' queue: that one may stand still until an event that the caller sets after this call.
+    field.field.context().write_async(buffer, 0, values.size() * (as_double ? sizeof(double) : sizeof(float)), from, {}, "uploading the centre and scale of a field").wait();
     return buffer;
 }
 

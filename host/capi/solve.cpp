@@ -40,12 +40,12 @@ SolveOptions inner_options(const lcl_solve_options& given) {
 
 void fill(lcl_solve_report* report, const SolveReport& inner) {
     if (report == nullptr) return;
-    lcl_solve_report out = *report;
+    lcl_solve_report out = options_or(report, LCL_SOLVE_REPORT_INIT, "report");
     out.solver = static_cast<lcl_solver>(inner.solver);
     out.converged = inner.status == SolveStatus::converged;
     out.iterations = inner.iterations;
     out.residual_count = inner.residuals.size();
-    if (report->residuals != nullptr) std::copy_n(inner.residuals.begin(), std::min(report->residual_capacity, inner.residuals.size()), report->residuals);
+    if (out.residuals != nullptr) std::copy_n(inner.residuals.begin(), std::min(out.residual_capacity, inner.residuals.size()), out.residuals);
     out.lambda_min = inner.lambda_min;
     out.max_error = inner.max_error;
     out.surface_error_bound = inner.surface_error_bound;
@@ -75,7 +75,11 @@ lcl_status interpolate(lcl_operator A, const double* M, std::size_t stride, int3
     if (P_stride == 0) P_stride = channels;
     check_channels(channels, stride, "stride");
     check_channels(channels, P_stride, "P_stride");
-    return conclude(solve_host(system, required(M, "M"), stride, channels, inner_options(given), given.warm_start != 0, required(P, "P"), P_stride), given, report);
+    options_or(report, LCL_SOLVE_REPORT_INIT, "report");  // refuses one without a size before any work
+    require_finite(required(M, "M"), stride, channels, system.plan().vertex_count, "M");
+    required(P, "P");
+    if (given.warm_start != 0) require_finite(P, P_stride, channels, system.plan().vertex_count, "P");
+    return conclude(solve_host(system, M, stride, channels, inner_options(given), given.warm_start != 0, P, P_stride), given, report);
 }
 
 }  // namespace
@@ -91,7 +95,8 @@ lcl_status lcl_limit_points(lcl_operator A, const double* points, size_t stride,
         check_channels(channels, out_stride, "out_stride");
         required(out, "out");
         const Plan& plan = system.plan();
-        const Transform transform = fit_transform(plan, required(points, "points"), stride, channels);
+        require_finite(required(points, "points"), stride, channels, plan.vertex_count, "points");
+        const Transform transform = fit_transform(plan, points, stride, channels);
         const Precision inner = inner_precision(precision);
         const Real real = inner == Precision::mixed ? Real::wide : inner == Precision::single ? Real::single : Real::full;
         std::vector<double> values = to_plan_order(plan, transform, points, stride, channels);
@@ -161,6 +166,7 @@ lcl_status lcl_interpolate_field(lcl_operator A, lcl_field M, const lcl_solve_op
         if (!M->transform) throw InvalidArgument("the field M holds no values yet: upload them first");
         if (P->field.channels() != M->field.channels() || P->field.real() != M->field.real()) throw InvalidArgument("M and P differ in channels or precision");
         const lcl_solve_options given = options_or(options, LCL_SOLVE_OPTIONS_INIT, "options");
+        options_or(report, LCL_SOLVE_REPORT_INIT, "report");  // refuses one without a size before any work
         SolveOptions inner = inner_options(given);
         if (M->field.real() == Real::full) inner.precision = Precision::full;
         else if (inner.precision == Precision::full) throw InvalidArgument("the fields hold floats, and double precision was asked for: create them with LCL_PRECISION_DOUBLE");

@@ -140,7 +140,7 @@ Mesh read_input(Job& job) {
         note_boundary(job, mesh.get());
     }
     job.report.scheme = scheme_name(default_scheme(job.options, mesh.get()));
-    say_mesh(job, mesh.get());
+    if (job.options.command != "info") say_mesh(job, mesh.get());  // there the table says it
     warn_of_notes(job, mesh.get());
     return mesh;
 }

@@ -41,7 +41,8 @@ Buffer::Buffer(std::shared_ptr<Context> context, cl_mem memory, std::size_t offs
     if (memory_value<cl_context>(memory, CL_MEM_CONTEXT) != context->get()) throw InvalidArgument("the OpenCL memory object belongs to another OpenCL context");
     const auto size = memory_value<std::size_t>(memory, CL_MEM_SIZE);
     if (offset > size || bytes > size - offset) {
-        throw InvalidArgument("the OpenCL memory object has " + std::to_string(size) + " bytes, too few for " + std::to_string(bytes) + " from byte " + std::to_string(offset));
+        throw InvalidArgument("the OpenCL memory object has " + std::to_string(size) + " bytes, too few for " + std::to_string(bytes) + " from byte " +
+                              std::to_string(offset));
     }
     check(clRetainMemObject(memory), "clRetainMemObject", "taking over a memory object");
     memory_ = memory;

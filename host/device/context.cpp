@@ -23,11 +23,13 @@ std::vector<cl_event> list_of(const Event& event) { return event.get() ? std::ve
 /// OpenCL checks the memory object's end, but a caller's memory may reach further than the part that a Buffer stands for.
 void check_range(const Buffer& buffer, std::size_t offset, std::size_t bytes, const std::string& doing) {
     if (offset <= buffer.bytes() && bytes <= buffer.bytes() - offset) return;
-    throw InvalidArgument("copy of " + std::to_string(bytes) + " bytes at byte " + std::to_string(offset) + " of a buffer of " + std::to_string(buffer.bytes()) +
-                          " bytes while " + doing);
+    throw InvalidArgument("copy of " + std::to_string(bytes) + " bytes at byte " + std::to_string(offset) + " of a buffer of " +
+                          std::to_string(buffer.bytes()) + " bytes while " + doing);
 }
 
-std::string kernel_name(cl_kernel kernel) { return query_text(clGetKernelInfo, kernel, static_cast<cl_kernel_info>(CL_KERNEL_FUNCTION_NAME), "clGetKernelInfo"); }
+std::string kernel_name(cl_kernel kernel) {
+    return query_text(clGetKernelInfo, kernel, static_cast<cl_kernel_info>(CL_KERNEL_FUNCTION_NAME), "clGetKernelInfo");
+}
 
 void check_argument(int code, cl_kernel kernel, unsigned place) {
     if (code != CL_SUCCESS) check(code, "clSetKernelArg", "setting argument " + std::to_string(place) + " of " + kernel_name(kernel));
@@ -47,7 +49,8 @@ void Event::wait() const {
     if (!event_) return;
     int code = clWaitForEvents(1, &event_);
     cl_int status = CL_COMPLETE;  // below zero: the error that ended the command, which says more than the wait's
-    if (code != CL_SUCCESS && clGetEventInfo(event_, CL_EVENT_COMMAND_EXECUTION_STATUS, sizeof status, &status, nullptr) == CL_SUCCESS && status < 0) code = status;
+    if (code != CL_SUCCESS && clGetEventInfo(event_, CL_EVENT_COMMAND_EXECUTION_STATUS, sizeof status, &status, nullptr) == CL_SUCCESS && status < 0)
+        code = status;
     check(code, "clWaitForEvents", "waiting for the device");
 }
 
@@ -75,9 +78,11 @@ std::shared_ptr<Context> Context::create(const DeviceInfo& device, const Context
 
 std::shared_ptr<Context> Context::adopt(cl_context context, cl_command_queue queue, const ContextOptions& options) {
     if (!context || !queue) throw InvalidArgument("the OpenCL context or command queue to work on is null");
-    if (queue_value<cl_context>(queue, CL_QUEUE_CONTEXT) != context) throw InvalidArgument("the command queue belongs to another OpenCL context than the one given with it");
+    if (queue_value<cl_context>(queue, CL_QUEUE_CONTEXT) != context)
+        throw InvalidArgument("the command queue belongs to another OpenCL context than the one given with it");
     if (queue_value<cl_command_queue_properties>(queue, CL_QUEUE_PROPERTIES) & CL_QUEUE_OUT_OF_ORDER_EXEC_MODE_ENABLE) {
-        throw InvalidArgument("the command queue is out of order, which would mix up the steps of a solver: give one made without CL_QUEUE_OUT_OF_ORDER_EXEC_MODE_ENABLE");
+        throw InvalidArgument(
+            "the command queue is out of order, which would mix up the steps of a solver: give one made without CL_QUEUE_OUT_OF_ORDER_EXEC_MODE_ENABLE");
     }
     std::shared_ptr<Context> made(new Context);
     made->device_ = describe_device(queue_value<cl_device_id>(queue, CL_QUEUE_DEVICE));
@@ -121,7 +126,8 @@ Event Context::write_async(const Buffer& buffer, std::size_t offset, std::size_t
     const std::vector<cl_event> waits = list_of(after);
     if (!waits.empty()) check(clFlush(queue_), "clFlush", doing);
     cl_event event = nullptr;
-    check(clEnqueueWriteBuffer(transfer_queue_, buffer.get(), CL_FALSE, buffer.offset() + offset, bytes, from, static_cast<cl_uint>(waits.size()), list_of(waits), &event),
+    check(clEnqueueWriteBuffer(transfer_queue_, buffer.get(), CL_FALSE, buffer.offset() + offset, bytes, from, static_cast<cl_uint>(waits.size()),
+                               list_of(waits), &event),
           "clEnqueueWriteBuffer", doing);
     Event done(event);
     check(clFlush(transfer_queue_), "clFlush", doing);
@@ -134,7 +140,8 @@ Event Context::read_async(const Buffer& buffer, std::size_t offset, std::size_t 
     const std::vector<cl_event> waits = list_of(after);
     if (!waits.empty()) check(clFlush(queue_), "clFlush", doing);
     cl_event event = nullptr;
-    check(clEnqueueReadBuffer(transfer_queue_, buffer.get(), CL_FALSE, buffer.offset() + offset, bytes, to, static_cast<cl_uint>(waits.size()), list_of(waits), &event),
+    check(clEnqueueReadBuffer(transfer_queue_, buffer.get(), CL_FALSE, buffer.offset() + offset, bytes, to, static_cast<cl_uint>(waits.size()), list_of(waits),
+                              &event),
           "clEnqueueReadBuffer", doing);
     Event done(event);
     check(clFlush(transfer_queue_), "clFlush", doing);
@@ -145,7 +152,8 @@ void Context::copy(const Buffer& from, std::size_t from_offset, const Buffer& to
     check_range(from, from_offset, bytes, doing);
     check_range(to, to_offset, bytes, doing);
     if (bytes == 0) return;
-    check(clEnqueueCopyBuffer(queue_, from.get(), to.get(), from.offset() + from_offset, to.offset() + to_offset, bytes, 0, nullptr, nullptr), "clEnqueueCopyBuffer", doing);
+    check(clEnqueueCopyBuffer(queue_, from.get(), to.get(), from.offset() + from_offset, to.offset() + to_offset, bytes, 0, nullptr, nullptr),
+          "clEnqueueCopyBuffer", doing);
 }
 
 void Context::fill_zero(const Buffer& buffer, const std::string& doing) {
@@ -164,7 +172,8 @@ Event Context::marker() {
 
 void Context::wait_for(const std::vector<cl_event>& events) {
     if (events.empty()) return;  // an empty list would mean everything before, which the order of the queue gives already
-    check(clEnqueueBarrierWithWaitList(queue_, static_cast<cl_uint>(events.size()), events.data(), nullptr), "clEnqueueBarrierWithWaitList", "waiting for events");
+    check(clEnqueueBarrierWithWaitList(queue_, static_cast<cl_uint>(events.size()), events.data(), nullptr), "clEnqueueBarrierWithWaitList",
+          "waiting for events");
 }
 
 void Context::finish() {
@@ -190,7 +199,8 @@ Event enqueue(Context& context, cl_kernel kernel, LaunchSize size) {
     const int code = clEnqueueNDRangeKernel(context.queue(), kernel, 1, nullptr, &size.global, size.local ? &size.local : nullptr, 0, nullptr, &event);
     if (code != CL_SUCCESS) {
         check(code, "clEnqueueNDRangeKernel",
-              "starting " + kernel_name(kernel) + " with " + std::to_string(size.global) + " work-items in groups of " + std::to_string(size.local) + " on " + context.device().name);
+              "starting " + kernel_name(kernel) + " with " + std::to_string(size.global) + " work-items in groups of " + std::to_string(size.local) + " on " +
+                  context.device().name);
     }
     return Event(event);
 }

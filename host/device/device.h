@@ -22,8 +22,8 @@ struct DeviceInfo {
     cl_device_id id = nullptr;
     bool is_gpu = false;
     bool is_cpu = false;
-    bool has_double = false;            ///< cl_khr_fp64 / double-precision arithmetic
-    std::size_t memory_bytes = 0;       ///< global memory
+    bool has_double = false;       ///< cl_khr_fp64 / double-precision arithmetic
+    std::size_t memory_bytes = 0;  ///< global memory
     std::size_t max_allocation_bytes = 0;
     std::size_t max_work_group_size = 0;
     unsigned compute_units = 0;
@@ -52,7 +52,10 @@ public:
     explicit Event(cl_event event) : event_(event) {}  ///< takes over one reference
     Event(const Event& other);
     Event(Event&& other) noexcept : event_(std::exchange(other.event_, nullptr)) {}
-    Event& operator=(Event other) noexcept { std::swap(event_, other.event_); return *this; }
+    Event& operator=(Event other) noexcept {
+        std::swap(event_, other.event_);
+        return *this;
+    }
     ~Event();
     cl_event get() const { return event_; }
     void wait() const;
@@ -64,7 +67,8 @@ private:
 
 struct ContextOptions {
     bool profiling = false;
-    std::string cache_directory;  ///< empty: LIMITCL_CACHE_DIR, else the user's cache folder (XDG_CACHE_HOME or ~/.cache, then /limitcl); not writable: no cache, no error
+    /// Of built programs. Empty: LIMITCL_CACHE_DIR, else the user's cache folder (XDG_CACHE_HOME or ~/.cache, then /limitcl); not writable: no cache, no error.
+    std::string cache_directory;
 };
 
 class Context;
@@ -74,7 +78,8 @@ class Buffer {
 public:
     Buffer() = default;
     /// Allocates, contents undefined; 0 bytes give a buffer that kernels can take too. `what` names it in messages ("the control points").
-    /// OutOfMemory, with the numbers, above the device's largest allocation, above its memory together with this context's other buffers, or when the device refuses.
+    /// OutOfMemory, with the numbers, above the device's largest allocation, above its memory together with this context's other buffers, or when the device
+    /// refuses.
     Buffer(std::shared_ptr<Context> context, std::size_t bytes, const std::string& what);
     /// Refers to a caller's cl_mem (retained), from byte `offset` on; kernels get the whole memory object, so they take the offset as an argument.
     /// InvalidArgument for memory of another OpenCL context or too small for offset + bytes.
@@ -98,8 +103,8 @@ private:
 class Context : public std::enable_shared_from_this<Context> {
 public:
     static std::shared_ptr<Context> create(const DeviceInfo& device, const ContextOptions& options = {});
-    /// On a caller's context and in-order queue, both retained; the device is the queue's. InvalidArgument for an out-of-order queue, a null one or one of another
-    /// context. Kernels can be timed if the caller's queue can.
+    /// On a caller's context and in-order queue, both retained; the device is the queue's. InvalidArgument for an out-of-order queue, a null one or one of
+    /// another context. Kernels can be timed if the caller's queue can.
     static std::shared_ptr<Context> adopt(cl_context context, cl_command_queue queue, const ContextOptions& options = {});
     ~Context();
 
@@ -122,10 +127,10 @@ public:
     void copy(const Buffer& from, std::size_t from_offset, const Buffer& to, std::size_t to_offset, std::size_t bytes, const std::string& doing);
     void fill_zero(const Buffer& buffer, const std::string& doing);
 
-    Event marker();                              ///< done when all that was put on the kernels' queue before is
+    Event marker();                                      ///< done when all that was put on the kernels' queue before is
     void wait_for(const std::vector<cl_event>& events);  ///< later kernels and copies on the kernels' queue start after these
     void finish();
-    double compile_seconds() const;  ///< spent in kernel() so far
+    double compile_seconds() const;                                   ///< spent in kernel() so far
     std::size_t allocated_bytes() const { return allocated_bytes_; }  ///< by this context's Buffers now
 
 private:
@@ -133,7 +138,6 @@ private:
     struct Programs;  // built programs and kernels by (file, options)
     Context() = default;
     DeviceInfo device_;
-    ContextOptions options_;
     cl_context context_ = nullptr;
     cl_command_queue queue_ = nullptr, transfer_queue_ = nullptr;
     std::unique_ptr<Programs> programs_;
@@ -146,17 +150,23 @@ struct LaunchSize {
 };
 
 /// One argument of a kernel: a buffer, a scalar, or local memory.
-struct LocalMemory { std::size_t bytes; };
+struct LocalMemory {
+    std::size_t bytes;
+};
 void set_argument(cl_kernel kernel, unsigned place, const Buffer& buffer);  // an empty Buffer is InvalidArgument: kernels take no null pointers
 void set_argument(cl_kernel kernel, unsigned place, LocalMemory local);
 void set_argument_bytes(cl_kernel kernel, unsigned place, const void* value, std::size_t bytes);
-template <class T> void set_argument(cl_kernel kernel, unsigned place, const T& value) { set_argument_bytes(kernel, place, &value, sizeof value); }
+template <class T>
+void set_argument(cl_kernel kernel, unsigned place, const T& value) {
+    set_argument_bytes(kernel, place, &value, sizeof value);
+}
 
 /// Enqueues on the context's kernel queue; a global size of 0 does nothing.
 Event enqueue(Context& context, cl_kernel kernel, LaunchSize size);
 
 /// Sets the arguments in order, checks every result, and enqueues.
-template <class... Arguments> Event launch(Context& context, cl_kernel kernel, LaunchSize size, const Arguments&... arguments) {
+template <class... Arguments>
+Event launch(Context& context, cl_kernel kernel, LaunchSize size, const Arguments&... arguments) {
     unsigned place = 0;
     (set_argument(kernel, place++, arguments), ...);
     return enqueue(context, kernel, size);

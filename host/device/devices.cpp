@@ -27,7 +27,8 @@ bool is_recent_enough(const std::string& version) {
 }
 
 bool is_usable(const DeviceInfo& device) {
-    return is_recent_enough(device.version) && device_value<cl_bool>(device.id, CL_DEVICE_AVAILABLE) && device_value<cl_bool>(device.id, CL_DEVICE_COMPILER_AVAILABLE);
+    return is_recent_enough(device.version) && device_value<cl_bool>(device.id, CL_DEVICE_AVAILABLE) &&
+           device_value<cl_bool>(device.id, CL_DEVICE_COMPILER_AVAILABLE);
 }
 
 std::vector<cl_platform_id> platforms() {
@@ -47,7 +48,8 @@ std::vector<cl_device_id> devices_of(cl_platform_id platform) {
     return found;
 }
 
-template <class Condition> const DeviceInfo* first_that(const std::vector<DeviceInfo>& devices, Condition condition) {
+template <class Condition>
+const DeviceInfo* first_that(const std::vector<DeviceInfo>& devices, Condition condition) {
     const auto found = std::find_if(devices.begin(), devices.end(), condition);
     return found == devices.end() ? nullptr : &*found;
 }

@@ -17,7 +17,8 @@ const EmbeddedKernel& find_file(std::string_view name) {
     if (found != all.end()) return *found;
     std::string list;
     for (const EmbeddedKernel& file : all) list += (list.empty() ? "" : ", ") + std::string(file.name);
-    throw InvalidArgument("kernels/" + std::string(name) + " is not part of this library, which has " + list + ": add it to the list of kernels in CMakeLists.txt");
+    throw InvalidArgument("kernels/" + std::string(name) + " is not part of this library, which has " + list +
+                          ": add it to the list of kernels in CMakeLists.txt");
 }
 
 std::string line_directive(std::size_t line, std::string_view name) { return "#line " + std::to_string(line) + " \"kernels/" + std::string(name) + "\"\n"; }

@@ -69,6 +69,7 @@ ProgramHandle Context::Programs::build(const std::string& file, const std::strin
     const std::string key = cache_key(device, options, source);
     if (ProgramHandle program = load_binary(key, options)) return program;
     ProgramHandle program = compile(file, source, options);
+    // At once, and not when the context ends: drivers that compile at the first launch keep that part in a cache of their own.
     cache.store(key, program_binary(program.get()));
     return program;
 }

@@ -254,6 +254,11 @@ double error_bound(LimitSystem& system, double max_error) {
     return std::max(fixed_error, inverse_norm_of(system).value * (max_error + (alone ? 0 : curve_error)));
 }
 
+void certify(LimitSystem& system, const SolveOptions& options, SolveReport& report) {
+    const bool has_inverse = report.status == SolveStatus::converged || report.status == SolveStatus::not_converged;
+    if (options.certify && has_inverse) report.surface_error_bound = error_bound(system, report.max_error);
+}
+
 void refuse_ghosts(const Plan& plan) {
     if (plan.row_count < plan.vertex_count)
         throw Unsupported("this operator has rows for " + std::to_string(plan.row_count) + " of its " + std::to_string(plan.vertex_count) +
@@ -304,9 +309,9 @@ SolveReport solve_host(LimitSystem& system, const double* M, std::size_t stride,
     from_plan_order(plan, transform, p, channels, P, P_stride);
     restore_rows(plan, kept, channels, P, P_stride);
     solve.judge(norms);
-    if (options.certify && (report.status == SolveStatus::converged || report.status == SolveStatus::not_converged)) report.surface_error_bound = error_bound(system, report.max_error);
     report.seconds_upload = seconds_upload;
     report.seconds_download = seconds_since(download_start);
+    certify(system, options, report);
     return report;
 }
 
@@ -348,7 +353,7 @@ SolveReport solve_fields(LimitSystem& system, const Field& M, const Transform& t
     SolveReport& report = solve.conclude();
     report.seconds_solve = seconds_since(start);
     solve.judge(norms);
-    if (options.certify && (report.status == SolveStatus::converged || report.status == SolveStatus::not_converged)) report.surface_error_bound = error_bound(system, report.max_error);
+    certify(system, options, report);
     return report;
 }
 
