@@ -300,9 +300,11 @@ lcl_status lcl_mesh_add_features(lcl_mesh mesh, const lcl_features* features) {
         const lcl_features given = options_or(required(features, "features"), LCL_FEATURES_INIT, "features");
         if (given.boundary < LCL_BOUNDARY_DEFAULT || given.boundary > LCL_BOUNDARY_FIXED) throw InvalidArgument("features.boundary is " + std::to_string(given.boundary) + ", it goes from 0 to 3");
         if (std::isnan(given.crease_angle_degrees) || given.crease_angle_degrees > 180) throw InvalidArgument("features.crease_angle_degrees goes from 0 to 180");
+        if (given.crease_count > 0) required(given.creases, "features.creases");
+        if (given.corner_count > 0) required(given.corners, "features.corners");
         FeatureOptions& own = mesh->feature_options;
-        for (std::size_t i = 0; i < given.crease_count; ++i) own.creases.push_back({required(given.creases, "features.creases")[2 * i], given.creases[2 * i + 1]});
-        for (std::size_t i = 0; i < given.corner_count; ++i) own.corners.push_back(required(given.corners, "features.corners")[i]);
+        for (std::size_t i = 0; i < given.crease_count; ++i) own.creases.push_back({given.creases[2 * i], given.creases[2 * i + 1]});
+        own.corners.insert(own.corners.end(), given.corners, given.corners + given.corner_count);
         if (given.crease_angle_degrees > 0) own.crease_angle_degrees = given.crease_angle_degrees;
         if (given.boundary != LCL_BOUNDARY_DEFAULT) mesh->boundary = given.boundary;
         mesh->forget_features();
