@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <exception>
+#include <system_error>
 #include <thread>
 #include <vector>
 
@@ -18,6 +19,7 @@ template <class Body> void parallel_for(std::size_t count, const Body& body, std
     if (pieces == 1) return body(std::size_t{0}, count);
     std::vector<std::exception_ptr> failures(pieces);
     std::vector<std::thread> threads;
+    threads.reserve(pieces);
     const auto run = [&](std::size_t piece) {
         try {
             body(count * piece / pieces, count * (piece + 1) / pieces);
@@ -25,8 +27,13 @@ template <class Body> void parallel_for(std::size_t count, const Body& body, std
             failures[piece] = std::current_exception();
         }
     };
-    for (std::size_t piece = 1; piece < pieces; ++piece) threads.emplace_back(run, piece);
+    std::size_t started = 1;
+    try {
+        for (; started < pieces; ++started) threads.emplace_back(run, started);
+    } catch (const std::system_error&) {  // no more threads to be had: the rest runs here
+    }
     run(0);
+    for (std::size_t piece = started; piece < pieces; ++piece) run(piece);
     for (std::thread& thread : threads) thread.join();
     for (const std::exception_ptr& failure : failures)
         if (failure) std::rethrow_exception(failure);

@@ -110,6 +110,13 @@ inline Mesh make_mesh(const shapes::Shape& shape) {
     return mesh;
 }
 
+/// Of the box of the vertices that a face uses.
+inline double diagonal_of(const shapes::Shape& shape) {
+    lcl_mesh_info info = LCL_MESH_INFO_INIT;
+    succeed(lcl_mesh_get_info(make_mesh(shape.mesh).get(), &info));
+    return info.diagonal;
+}
+
 inline Operator make_operator(lcl_context context, lcl_mesh mesh, const lcl_scheme_options* options = nullptr) {
     lcl_operator A = nullptr;
     succeed(lcl_operator_create(context, mesh, options, &A));

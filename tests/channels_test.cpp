@@ -71,15 +71,18 @@ TEST_CASE("positions share one scale, every further channel has its own, isolate
     CHECK(transform.scale[3] == Approx(1.0 / 100));
     CHECK(transform.scale[4] == 1);  // a constant
     const std::vector<double> stored = to_plan_order(plan, transform, values.data(), 5, 5);
-    for (int c = 0; c < 5; ++c) CHECK(stored[c] == 0);  // row 0 is the isolated vertex
+    CHECK(stored[0] == Approx((3010 - 11.5) / 5));  // row 0 is the isolated vertex
     double largest_value = 0;
-    for (const double value : stored) largest_value = std::max(largest_value, std::abs(value));
+    for (std::size_t i = 5; i < stored.size(); ++i) largest_value = std::max(largest_value, std::abs(stored[i]));
     CHECK(largest_value <= 0.5 + 1e-15);
+    values[15] = 1e300;
+    const std::vector<double> cut = to_plan_order(plan, fit_transform(plan, values.data(), 5, 5), values.data(), 5, 5);
+    CHECK(static_cast<float>(cut[0]) == 1e37f);  // and no infinity
 }
 
 TEST_CASE("the way to the plan's order and back gives the values again, with any stride", "[channels]") {
     const Plan plan = grid_plan();
-    for (const double offset : {0.0, 1e6, -1e30}) {
+    for (const double offset : {0.0, 1e6, -1e9}) {
         std::vector<double> values = numbers(plan.vertex_count * 7);
         for (double& value : values) value += offset;
         const Transform transform = fit_transform(plan, values.data(), 7, 4);
@@ -88,9 +91,19 @@ TEST_CASE("the way to the plan's order and back gives the values again, with any
         from_plan_order(plan, transform, stored, 4, back.data(), 5);
         for (Index v = 0; v < plan.vertex_count; ++v)
             for (int c = 0; c < 5; ++c) {
-                const bool written = v != 3 && c < 4;
-                CHECK(back[5 * v + c] == Approx(written ? values[7 * v + c] : -3).epsilon(4e-16).margin(4e-16));
+                const bool written = c < 4;
+                CHECK(back[5 * v + c] == Approx(written ? values[7 * v + c] : -3).epsilon(4e-16).margin(1e-15));
             }
+    }
+}
+
+TEST_CASE("values that cannot be scaled are refused", "[channels][refused]") {
+    const Plan plan = grid_plan();
+    std::vector<double> values(plan.vertex_count, 1.0);
+    for (const double bad : {std::nan(""), HUGE_VAL, 1.7e308}) {
+        values[5] = bad;
+        values[6] = -1.7e308;
+        CHECK_THROWS_AS(fit_transform(plan, values.data(), 1, 1), BadInput);
     }
 }
 

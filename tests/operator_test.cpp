@@ -6,7 +6,7 @@
 #include <catch2/catch.hpp>
 
 #include "host/operator/limit_rows.h"
-#include "host/operator/singular.h"
+#include "host/operator/suitability.h"
 #include "tests/solver_support.h"
 
 using namespace lcl;

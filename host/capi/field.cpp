@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 
 #include "host/capi/handles.h"
@@ -10,6 +11,9 @@ using namespace lcl;
 namespace {
 
 bool same(const Transform& a, const Transform& b) { return a.centre == b.centre && a.scale == b.scale; }
+
+/// a + c is 1, as for PIA and its relatives, but for the rounding of three-term recurrences such as Chebyshev's (1 + p) x - p d.
+bool is_affine(double a, double c) { return std::abs(a + c - 1) <= 4 * std::numeric_limits<double>::epsilon() * (std::abs(a) + std::abs(c)); }
 
 const Transform& transform_of(lcl_field field, const char* name) {
     if (!field->transform) throw InvalidArgument(std::string("the field ") + name + " holds no values yet: upload them, or give it a centre and scale by lcl_field_match");
@@ -68,6 +72,13 @@ void check_same_operator(lcl_operator A, std::initializer_list<lcl_field> fields
     }
 }
 
+/// y gets values in this centre and scale; where only some of its rows are written, the others must be in it already (or hold nothing yet).
+void set_transform(lcl_field y, const Transform& transform, bool all_rows_are_written) {
+    if (y->transform && !all_rows_are_written && !same(*y->transform, transform))
+        throw InvalidArgument("only some rows of y are written, and the others are kept in another centre and scale: use lcl_field_match before");
+    y->transform = transform;
+}
+
 }  // namespace
 
 extern "C" {
@@ -76,6 +87,7 @@ lcl_status lcl_field_create(lcl_operator A, int32_t channels, lcl_precision prec
     return guarded([&] {
         required(field, "field");
         if (channels < 1) throw InvalidArgument("channels is " + std::to_string(channels) + ", it is at least 1");
+        if (precision < LCL_PRECISION_MIXED || precision > LCL_PRECISION_DOUBLE) throw InvalidArgument("precision is " + std::to_string(precision) + ", it goes from 0 to 2");
         Field values = required(A, "A")->system->A->make_field(channels, precision == LCL_PRECISION_DOUBLE ? Real::full : Real::single);
         values.fill_zero();
         *field = new lcl_field_s(A, std::move(values));
@@ -112,12 +124,11 @@ lcl_status lcl_field_download(lcl_field field, void* values, lcl_type type, size
         std::vector<double> out(rows.size());
         from_plan_order(plan, transform_of(field, "to download"), rows, inner.channels(), out.data(), inner.channels());
         required(values, "values");
-        for (Index row = plan.isolated_count; row < plan.vertex_count; ++row)  // isolated vertices keep what the caller's memory holds
-            for (int c = 0; c < inner.channels(); ++c) {
-                const std::size_t v = plan.vertex_of_row[row], from = v * inner.channels() + c, to = v * stride + c;
-                if (type == LCL_TYPE_FLOAT) static_cast<float*>(values)[to] = static_cast<float>(out[from]);
-                else static_cast<double*>(values)[to] = out[from];
-            }
+        for (std::size_t i = 0; i < out.size(); ++i) {
+            const std::size_t place = i / inner.channels() * stride + i % inner.channels();
+            if (type == LCL_TYPE_FLOAT) static_cast<float*>(values)[place] = static_cast<float>(out[i]);
+            else static_cast<double*>(values)[place] = out[i];
+        }
         return LCL_OK;
     });
 }
@@ -125,7 +136,9 @@ lcl_status lcl_field_download(lcl_field field, void* values, lcl_type type, size
 lcl_status lcl_field_match(lcl_field field, lcl_field of) {
     return guarded([&] {
         if (required(field, "field")->field.channels() != required(of, "of")->field.channels()) throw InvalidArgument("the fields differ in channels");
-        field->transform = transform_of(of, "to match");
+        const Transform& transform = transform_of(of, "to match");
+        if (field->transform && !same(*field->transform, transform)) throw InvalidArgument("the field holds values in another centre and scale already: match it before its first upload");
+        field->transform = transform;
         return LCL_OK;
     });
 }
@@ -166,7 +179,7 @@ lcl_status lcl_operator_apply(lcl_operator A, lcl_field x, lcl_field y) {
     return guarded([&] {
         check_same_operator(required(A, "A"), {required(x, "x"), required(y, "y")});
         if (x == y) throw InvalidArgument("x and y are the same field");
-        y->transform = transform_of(x, "x");
+        set_transform(y, transform_of(x, "x"), A->system->plan().row_count == A->system->plan().vertex_count);
         A->system->A->limit_points(x->field, y->field, A->system->plan().all_rows());
         return LCL_OK;
     });
@@ -175,21 +188,22 @@ lcl_status lcl_operator_apply(lcl_operator A, lcl_field x, lcl_field y) {
 lcl_status lcl_operator_step(lcl_operator A, double a, double b, double c, lcl_field M, lcl_field x, lcl_field d, lcl_field y, int32_t first_block, int32_t block_count, double* residual) {
     return guarded([&] {
         check_same_operator(required(A, "A"), {required(x, "x"), required(M, "M"), required(y, "y"), d});
-        if (x == y) throw InvalidArgument("x and y are the same field");
+        if (x == y || M == y) throw InvalidArgument("y is the same field as x or M");
         if (c != 0) required(d, "d");
         const Transform& transform = transform_of(x, "x");
         for (const lcl_field field : {M, c != 0 ? d : M})
             if (!same(transform_of(field, field == M ? "M" : "d"), transform)) throw InvalidArgument("M, x and d differ in centre and scale: use lcl_field_match before uploading");
         const Plan& plan = A->system->plan();
         const Index blocks = static_cast<Index>(plan.blocks.size());
-        if (block_count < 0) block_count = blocks - first_block;
-        if (first_block < 0 || block_count < 0 || first_block > blocks - block_count)
-            throw InvalidArgument("blocks " + std::to_string(first_block) + " to " + std::to_string(first_block + block_count) + " were asked for, the operator has " + std::to_string(blocks));
+        const std::int64_t end = block_count < 0 ? blocks : std::int64_t{first_block} + block_count;
+        if (first_block < 0 || first_block > blocks || end > blocks)
+            throw InvalidArgument("blocks " + std::to_string(first_block) + " to " + std::to_string(end) + " were asked for, the operator has " + std::to_string(blocks));
+        block_count = static_cast<int32_t>(end) - first_block;
         const Part part{0, 0, first_block, block_count};
         Transform result = transform;
-        if (a + c != 1) for (double& centre : result.centre) centre *= a + c;  // of an affine sum; 1 for PIA and its relatives, 0 for a residual
+        if (!is_affine(a, c)) for (double& centre : result.centre) centre *= a + c;  // 0 for a residual
+        set_transform(y, result, block_count == blocks && plan.row_count == plan.vertex_count);
         A->system->A->sweep({a, b, 0, c}, M->field, x->field, c != 0 ? &d->field : nullptr, y->field, part);
-        y->transform = result;
         if (residual != nullptr) *residual = A->system->A->norms(x->field, part).position / transform.scale[0];
         return LCL_OK;
     });

@@ -8,8 +8,12 @@
 namespace lcl {
 namespace {
 
-lcl_status fail(lcl_status status, const char* message, Where where = {}) {
-    last_error() = {message, std::move(where)};
+lcl_status fail(lcl_status status, const char* message, const Where& where = {}) {
+    try {
+        last_error() = {message, where};
+    } catch (const std::bad_alloc&) {  // no room for the sentence: the status says it
+        last_error().message.clear();
+    }
     return status;
 }
 
@@ -22,9 +26,9 @@ LastError& last_error() {
     return error;
 }
 
-lcl_status guarded(const std::function<lcl_status()>& body) {
+lcl_status current_failure() noexcept {
     try {
-        return body();
+        throw;
     } catch (const InvalidArgument& e) {
         return fail(LCL_ERROR_INVALID_ARGUMENT, e.what(), e.where);
     } catch (const BadInput& e) {

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cstring>
-#include <functional>
 #include <string>
 
 #include "host/error.h"
@@ -19,8 +18,17 @@ struct LastError {
 };
 LastError& last_error();
 
-/// Runs body; an exception becomes its status and the thread's last error.
-lcl_status guarded(const std::function<lcl_status()>& body);
+/// The status of the exception that is being handled, which becomes the thread's last error.
+lcl_status current_failure() noexcept;
+
+/// Runs body; no exception leaves it.
+template <class Body> lcl_status guarded(const Body& body) noexcept {
+    try {
+        return body();
+    } catch (...) {
+        return current_failure();
+    }
+}
 
 /// Fails unless the pointer is there: "mesh is NULL".
 template <class T> T* required(T* pointer, const char* name) {

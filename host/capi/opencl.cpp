@@ -26,8 +26,9 @@ CallerRows checked(lcl_field field, cl_mem memory, std::size_t offset, lcl_type 
     if (offset % rows.value_bytes() != 0) throw InvalidArgument("offset is " + std::to_string(offset) + " bytes, not a multiple of a value's " + std::to_string(rows.value_bytes()));
     std::size_t size = 0;
     check(clGetMemObjectInfo(memory, CL_MEM_SIZE, sizeof size, &size, nullptr), "clGetMemObjectInfo", "looking at a caller's buffer");
-    const std::size_t last = inner.rows() == 0 ? 0 : ((inner.rows() - 1) * rows.stride + inner.channels()) * rows.value_bytes();
-    if (offset + last > size) throw InvalidArgument("the rows end at byte " + std::to_string(offset + last) + ", and the buffer has " + std::to_string(size));
+    const std::size_t room = offset > size ? 0 : (size - offset) / rows.value_bytes(), last_row = inner.rows() > 0 ? inner.rows() - 1 : 0, channels = inner.channels();
+    if (inner.rows() > 0 && (room < channels || (last_row > 0 && rows.stride > (room - channels) / last_row)))
+        throw InvalidArgument(std::to_string(inner.rows()) + " rows of stride " + std::to_string(rows.stride) + " from byte " + std::to_string(offset) + " do not fit into the buffer's " + std::to_string(size) + " bytes");
     return rows;
 }
 

@@ -87,6 +87,7 @@ lcl_status lcl_operator_create(lcl_context context, lcl_mesh mesh, const lcl_sch
         required(mesh, "mesh");
         const lcl_scheme_options given = options_or(options, LCL_SCHEME_OPTIONS_INIT, "options");
         SchemeOptions scheme = scheme_options(*mesh, given);
+        if (given.alpha_auto != 0 && given.alpha != 0) throw InvalidArgument("alpha is given and alpha_auto is set: choose one");
         PlanOptions plan;
         plan.subset = vertex_marks(given.subset, given.subset_count, mesh->file.mesh.vertex_count, "subset");
         plan.owned = vertex_marks(given.owned, given.owned_count, mesh->file.mesh.vertex_count, "owned");

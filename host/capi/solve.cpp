@@ -93,22 +93,7 @@ lcl_status lcl_limit_points(lcl_operator A, const double* points, size_t stride,
         if (out_stride == 0) out_stride = channels;
         check_channels(channels, stride, "stride");
         check_channels(channels, out_stride, "out_stride");
-        required(out, "out");
-        const Plan& plan = system.plan();
-        require_finite(required(points, "points"), stride, channels, plan.vertex_count, "points");
-        const Transform transform = fit_transform(plan, points, stride, channels);
-        const Precision inner = inner_precision(precision);
-        const Real real = inner == Precision::mixed ? Real::wide : inner == Precision::single ? Real::single : Real::full;
-        std::vector<double> values = to_plan_order(plan, transform, points, stride, channels);
-        Field x = system.A->make_field(channels, real), y = system.A->make_field(channels, real);
-        x.upload(values.data(), 0, plan.vertex_count);
-        y.copy_from(x);  // ghosts
-        system.A->limit_points(x, y, plan.all_rows());
-        y.download(values.data(), 0, plan.vertex_count);
-        std::vector<double> kept;  // fixed rows come back to the bit, also where out is points
-        for (Index row = 0; row < plan.fixed.end_row(); ++row) kept.insert(kept.end(), points + plan.vertex_of_row[row] * stride, points + plan.vertex_of_row[row] * stride + channels);
-        from_plan_order(plan, transform, values, channels, out, out_stride);
-        for (Index row = 0; row < plan.fixed.end_row(); ++row) std::copy_n(&kept[static_cast<std::size_t>(row) * channels], channels, out + plan.vertex_of_row[row] * out_stride);
+        limit_points(*system.A, required(points, "points"), stride, channels, inner_precision(precision), required(out, "out"), out_stride);
         return LCL_OK;
     });
 }

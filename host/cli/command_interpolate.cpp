@@ -13,7 +13,6 @@ namespace lcl::cli {
 
 namespace {
 
-constexpr double nearly_singular = 0.05;  // the estimate of lambda_min from which `--alpha auto` would take 0.5
 
 constexpr int most_residuals = 1 << 22;  // a longer history is cut: 32 MiB, whatever --max-iter says
 
@@ -110,8 +109,6 @@ lcl_status solve(Job& job, lcl_context context, lcl_operator A, std::int32_t cha
 
 /// A solve that came through on an operator near a singular one: the control points are right, but small errors in M grow in them.
 void warn_of_spectrum(Job& job, lcl_operator A) {
-    const double lambda_min = job.report.solve->report.lambda_min;
-    if (lambda_min >= nearly_singular) return;
     lcl_diagnosis diagnosis = LCL_DIAGNOSIS_INIT;
     check(lcl_operator_diagnose(A, &diagnosis));
     if (diagnosis.reason[0] == '\0') return;
@@ -155,12 +152,12 @@ void run_interpolate(Job& job) {
     std::optional<Failure> failure;
     if (status != LCL_OK) failure = failure_of_result(status, job.report.solve->report);
     say_solve(job, channels.size());
+    if (status == LCL_OK || status == LCL_ERROR_NOT_CONVERGED) warn_of_spectrum(job, A.get());
     if (failure && job.options.sweeps > 0) {
         warn(job, failure->message);
         failure.reset();
     }
     if (failure && !job.options.keep_going) throw *failure;
-    if (!failure) warn_of_spectrum(job, A.get());
     scatter_values(mesh.get(), channels, values);
     write_output(job, mesh.get());
     if (failure) throw *failure;

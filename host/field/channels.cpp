@@ -9,6 +9,11 @@
 #include "host/parallel.h"
 
 namespace lcl {
+namespace {
+
+constexpr double float_range = 1e37;
+
+}  // namespace
 
 std::vector<ChannelBlock> channel_blocks(int channels) {
     const auto width_of = [](int count) { return count > 2 ? 4 : count; };
@@ -42,6 +47,8 @@ Transform fit_transform(const Plan& plan, const double* values, std::size_t stri
     for (int c = 0; c < channels; ++c) {
         const double size = c < 3 ? diagonal : high[c] - low[c];
         transform.centre[c] = low[c] + (high[c] - low[c]) / 2;
+        if (!std::isfinite(size) || (size > 0 && !std::isfinite(1 / size)))
+            throw BadInput("the values of channel " + std::to_string(c) + " go from " + std::to_string(low[c]) + " to " + std::to_string(high[c]) + ", a size that double precision cannot scale: use other units");
         if (size > 0) transform.scale[c] = 1 / size;
     }
     return transform;
@@ -50,9 +57,12 @@ Transform fit_transform(const Plan& plan, const double* values, std::size_t stri
 std::vector<double> to_plan_order(const Plan& plan, const Transform& transform, const double* values, std::size_t stride, int channels) {
     std::vector<double> out(static_cast<std::size_t>(plan.vertex_count) * channels);
     parallel_for(plan.vertex_count, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t row = std::max<std::size_t>(begin, plan.isolated_count); row < end; ++row) {
+        for (std::size_t row = begin; row < end; ++row) {
             const double* value = values + static_cast<std::size_t>(plan.vertex_of_row[row]) * stride;
-            for (int c = 0; c < channels; ++c) out[row * channels + c] = (value[c] - transform.centre[c]) * transform.scale[c];
+            for (int c = 0; c < channels; ++c) {
+                const double stored = (value[c] - transform.centre[c]) * transform.scale[c];
+                out[row * channels + c] = row < static_cast<std::size_t>(plan.isolated_count) ? std::clamp(stored, -float_range, float_range) : stored;
+            }
         }
     });
     return out;
@@ -60,7 +70,7 @@ std::vector<double> to_plan_order(const Plan& plan, const Transform& transform, 
 
 void from_plan_order(const Plan& plan, const Transform& transform, const std::vector<double>& values, int channels, double* out, std::size_t stride) {
     parallel_for(plan.vertex_count, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t row = std::max<std::size_t>(begin, plan.isolated_count); row < end; ++row) {
+        for (std::size_t row = begin; row < end; ++row) {
             double* value = out + static_cast<std::size_t>(plan.vertex_of_row[row]) * stride;
             for (int c = 0; c < channels; ++c) value[c] = values[row * channels + c] / transform.scale[c] + transform.centre[c];
         }

@@ -22,13 +22,14 @@ struct Transform {
 };
 
 /// Positions: centre and inverse diagonal of the bounding box; further channels: middle and inverse range. 1 where a range is 0. Isolated vertices are left out.
-/// BadInput for a value that is not finite. values: row v of `stride` doubles belongs to vertex v.
+/// BadInput for a value that is not finite, or values so large or so close together that their size or its inverse is none. values: row v of `stride` doubles belongs to vertex v.
 Transform fit_transform(const Plan& plan, const double* values, std::size_t stride, int channels);
 
-/// Values in the plan's order, transformed: vertex_count x channels. Isolated vertices, which may be anywhere, become 0.
+/// Values in the plan's order, transformed: vertex_count x channels. Isolated vertices, which may be anywhere, are cut off at 1e37, so that
+/// floats hold them.
 std::vector<double> to_plan_order(const Plan& plan, const Transform& transform, const double* values, std::size_t stride, int channels);
 
-/// The inverse; writes channels doubles at out + v * stride for every vertex v but isolated ones.
+/// The inverse; writes channels doubles at out + v * stride for every vertex v.
 void from_plan_order(const Plan& plan, const Transform& transform, const std::vector<double>& values, int channels, double* out, std::size_t stride);
 
 }  // namespace lcl

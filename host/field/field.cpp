@@ -16,6 +16,15 @@ void split(double value, float& high, float& low) {
     low = static_cast<float>(value - high);
 }
 
+/// Waits for its events when it goes, so that memory declared before outlives transfers also when something throws.
+struct Travelling {
+    std::array<Event, 2> events;
+    ~Travelling() {
+        for (const Event& event : events)
+            if (event.get() != nullptr) clWaitForEvents(1, std::array<cl_event, 1>{event.get()}.data());
+    }
+};
+
 }  // namespace
 
 Field::Field(std::shared_ptr<Context> context, Index rows, int channels, Real real)
@@ -57,28 +66,29 @@ void Field::unpack(const void* in, std::size_t count, std::size_t block, double*
 
 void Field::upload(const double* values, Index first, Index count) {
     std::array<std::vector<unsigned char>, 2> staging;
-    std::array<Event, 2> travelling;
+    Travelling travelling;
     const Event before = context_->marker();
     int turn = 0;
     for (std::size_t b = 0; b < blocks_.size(); ++b)
         for (std::size_t begin = 0; begin < static_cast<std::size_t>(count); begin += piece_rows, turn ^= 1) {
             const std::size_t rows = std::min(piece_rows, count - begin);
-            travelling[turn].wait();
+            travelling.events[turn].wait();
             staging[turn].resize(rows * row_bytes(b));
             pack(values + begin * channels_, rows, b, staging[turn].data());
-            travelling[turn] = context_->write_async(buffers_[b], (first + begin) * row_bytes(b), rows * row_bytes(b), staging[turn].data(), before, "uploading a field");
+            travelling.events[turn] = context_->write_async(buffers_[b], (first + begin) * row_bytes(b), rows * row_bytes(b), staging[turn].data(), before, "uploading a field");
         }
-    for (const Event& event : travelling) event.wait();
+    for (const Event& event : travelling.events) event.wait();
 }
 
 void Field::download(double* values, Index first, Index count) const {
     std::array<std::vector<unsigned char>, 2> staging;
-    struct Piece { Event event; std::size_t block, begin, rows; };
+    Travelling travelling;
+    struct Piece { std::size_t block, begin, rows; };
     std::array<Piece, 2> pieces{};
     const Event before = context_->marker();
     const auto finish = [&](int turn) {
         if (pieces[turn].rows == 0) return;
-        pieces[turn].event.wait();
+        travelling.events[turn].wait();
         unpack(staging[turn].data(), pieces[turn].rows, pieces[turn].block, values + pieces[turn].begin * channels_);
     };
     int turn = 0;
@@ -87,7 +97,8 @@ void Field::download(double* values, Index first, Index count) const {
             finish(turn);
             const std::size_t rows = std::min(piece_rows, count - begin);
             staging[turn].resize(rows * row_bytes(b));
-            pieces[turn] = {context_->read_async(buffers_[b], (first + begin) * row_bytes(b), rows * row_bytes(b), staging[turn].data(), before, "downloading a field"), b, begin, rows};
+            travelling.events[turn] = context_->read_async(buffers_[b], (first + begin) * row_bytes(b), rows * row_bytes(b), staging[turn].data(), before, "downloading a field");
+            pieces[turn] = {b, begin, rows};
         }
     finish(turn);
     finish(turn ^ 1);

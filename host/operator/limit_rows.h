@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Rows of the limit operator A, one vertex at a time, in double and in the caller's numbering. math in the mesh expansion, Loop PIA, two-phase and Doo-Sabin papers.
+// Rows of the limit operator A, one vertex at a time, in double and in the caller's numbering. Masks: mesh expansion, Loop PIA, two-phase and Doo-Sabin papers.
 #pragma once
 
 #include <cstdint>
@@ -55,7 +55,6 @@ public:
     LimitRow row(Index v);
     /// Weights of all ring rows with so many edge ends.
     RingWeights ring_weights(const RowClass& row) const;
-    const SchemeOptions& options() const { return options_; }
 
 private:
     void add_smooth(Index v, LimitRow& row) const;

@@ -16,7 +16,7 @@ namespace {
 constexpr int part_count = 5;  // fixed, curve, dart, smooth, ghost: RowKind's order
 
 /// Rows with equal codes stand together inside a block.
-int shape_code(const RowClass& row) { return static_cast<int>(row.shape) * 65536 + std::min(row.edges, 65535); }
+std::int64_t shape_code(const RowClass& row) { return (static_cast<std::int64_t>(row.shape) << 32) + row.edges; }
 
 class PlanBuilder {
 public:

@@ -2,13 +2,14 @@
 #include "host/operator/schedule.h"
 
 #include <algorithm>
+#include <limits>
 
 namespace lcl {
 namespace {
 
 /// The pattern of A and of its transpose together: rows that must not be updated at once. (Curve rows see fewer neighbours than see them.)
 struct Graph {
-    std::vector<std::uint32_t> offsets;
+    std::vector<std::size_t> offsets;
     std::vector<Index> neighbours;
 };
 
@@ -35,7 +36,7 @@ Graph symmetric_graph(const Plan& plan) {
     });
     for (Index row = 0; row < plan.row_count; ++row) graph.offsets[row + 1] += graph.offsets[row];
     graph.neighbours.resize(graph.offsets.back());
-    std::vector<std::uint32_t> place(graph.offsets.begin(), graph.offsets.end() - 1);
+    std::vector<std::size_t> place(graph.offsets.begin(), graph.offsets.end() - 1);
     for_each_entry(plan, [&](Index a, Index b) {
         if (between_rows(a, b)) graph.neighbours[place[a]++] = b, graph.neighbours[place[b]++] = a;
     });
@@ -56,6 +57,8 @@ Schedule from_steps(const Plan& plan, const std::vector<Index>& order, const std
         const LimitRow entries = plan_row(plan, run_of_row(plan, row), row);
         schedule.columns.insert(schedule.columns.end(), entries.columns.begin(), entries.columns.end());
         schedule.weights.insert(schedule.weights.end(), entries.weights.begin(), entries.weights.end());
+        if (schedule.columns.size() > std::numeric_limits<std::uint32_t>::max())
+            throw OutOfMemory("the rows of a Gauss-Seidel schedule have more than 4294967295 entries: use another solver, or split the mesh into parts");
         schedule.offsets.push_back(static_cast<std::uint32_t>(schedule.columns.size()));
         schedule.inverse_diagonal.push_back(1 / plan.diagonal[row]);
     }
@@ -78,7 +81,7 @@ Schedule natural_schedule(const Plan& plan) {
     const std::vector<Index> order = rows_in_natural_order(plan);
     std::vector<Index> level(plan.row_count, 0);
     for (const Index row : order)
-        for (std::uint32_t e = graph.offsets[row]; e < graph.offsets[row + 1]; ++e) {
+        for (std::size_t e = graph.offsets[row]; e < graph.offsets[row + 1]; ++e) {
             const Index neighbour = graph.neighbours[e];
             if (plan.vertex_of_row[neighbour] < plan.vertex_of_row[row]) level[row] = std::max(level[row], level[neighbour] + 1);
         }
@@ -90,7 +93,7 @@ Schedule coloured_schedule(const Plan& plan) {
     std::vector<Index> order(plan.row_count), colour(plan.row_count, -1), taken_by;
     for (Index row = 0; row < plan.row_count; ++row) {
         order[row] = row;
-        for (std::uint32_t e = graph.offsets[row]; e < graph.offsets[row + 1]; ++e) {
+        for (std::size_t e = graph.offsets[row]; e < graph.offsets[row + 1]; ++e) {
             const Index c = colour[graph.neighbours[e]];
             if (c >= 0) taken_by[c] = row;
         }

@@ -15,6 +15,7 @@ namespace {
 
 constexpr int columns = 3;
 constexpr int rounds = 3;
+constexpr int solve_iterations = 1000;
 constexpr double solve_tolerance = 1e-3;
 
 using Block = std::vector<double>;  // smooth rows x columns
@@ -27,6 +28,7 @@ public:
         m_.fill_zero();
     }
 
+    /// Not a number where a solve does not end.
     double run() {
         Block start(rows() * columns);
         for (std::size_t i = 0; i < start.size(); ++i) start[i] = (i % columns == 0 || (i * 2654435761u >> 7) % 2 == 0 ? 1.0 : -1.0) / rows();
@@ -39,7 +41,7 @@ public:
             for (double& value : y) value = value < 0 ? -1 : 1;
             start = unit_columns(solve(std::move(y)));
         }
-        return estimate;
+        return has_converged_ ? estimate : std::numeric_limits<double>::quiet_NaN();
     }
 
 private:
@@ -52,9 +54,11 @@ private:
         for (double& value : b) value /= size;
         m_.upload(b.data(), part_.first_row, part_.row_count);
         x_.fill_zero();
-        Monitor monitor(200, {}, {});
-        monitor.begin_stage({solve_tolerance, solve_tolerance});
+        Monitor monitor(solve_iterations, {}, {});
+        monitor.allow_growth();
+        monitor.begin_stage({solve_tolerance / columns, solve_tolerance / columns});
         iterate_conjugate_gradients(A_, part_, m_, x_, monitor);
+        has_converged_ = has_converged_ && monitor.outcome() == Outcome::converged;
         x_.download(b.data(), part_.first_row, part_.row_count);
         for (double& value : b) value *= size;
         return b;
@@ -94,6 +98,7 @@ private:
     const Part part_;
     const std::vector<double> scaling_;
     Field m_, x_;
+    bool has_converged_ = true;
 };
 
 }  // namespace

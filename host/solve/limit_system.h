@@ -6,7 +6,7 @@
 #include <optional>
 
 #include "host/apply/device_operator.h"
-#include "host/operator/singular.h"
+#include "host/operator/suitability.h"
 
 namespace lcl {
 
@@ -23,9 +23,10 @@ struct Spectrum {
     std::vector<Index> vertices;
 };
 
+/// |A^-1|_inf of the smooth block, without a unit: how far an error of the residual can reach.
 struct InverseNorm {
-    double value = 0;
-    bool proven = false;
+    double value = 0;     ///< NaN where the estimate's solves do not end
+    bool proven = false;  ///< an upper bound; else an estimate, which lies below the norm, by a few percent as a rule
 };
 
 struct LimitSystem {
@@ -50,7 +51,7 @@ std::unique_ptr<LimitSystem> make_limit_system(std::shared_ptr<Context> context,
 /// Bounds and estimates lambda_min by a short Lanczos run on the device: some 20 passes at the first call.
 const Spectrum& spectrum_of(LimitSystem& system);
 
-/// |A^-1|_inf of the smooth block: 1/min(2 a_ii - 1) where its rows are diagonally dominant, else the block Hager-Higham estimate (Higham & Tisseur 2000), some ten short solves.
+/// 1/min(2 a_ii - 1) where the smooth rows are diagonally dominant, else the block Hager-Higham estimate (Higham & Tisseur 2000), some ten short solves at the first call.
 /// Unsupported with darts.
 const InverseNorm& inverse_norm_of(LimitSystem& system);
 

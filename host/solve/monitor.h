@@ -29,6 +29,8 @@ public:
     Monitor(int max_iterations, Target target, std::function<bool(int, double, double)> progress, bool is_exact = false)
         : max_iterations_(max_iterations), target_(target), progress_(std::move(progress)), is_exact_(is_exact) {}
 
+    /// Conjugate gradients lower the error, not the residual: it may grow on the way, and growth is no sign of divergence.
+    void allow_growth() { growth_is_allowed_ = true; }
     /// Starts a stage that ends when `target` is met or after `limit` iterations in all (below 0: the monitor's own).
     void begin_stage(Target target, int limit = -1);
     /// Takes the residual of the iterate after iteration() iterations; true if the stage is over, and outcome() says why.
@@ -55,7 +57,7 @@ private:
     int max_iterations_, limit_ = 0, iteration_ = 0;
     Target target_, stage_;
     std::function<bool(int, double, double)> progress_;
-    bool is_exact_ = false;
+    bool is_exact_ = false, growth_is_allowed_ = false;
     Outcome outcome_ = Outcome::exhausted;
     std::vector<double> history_;
     double first_ = -1, best_ = -1;

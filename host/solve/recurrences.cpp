@@ -80,12 +80,13 @@ void iterate_conjugate_gradients(DeviceOperator& A, const Part& part, const Fiel
 }
 
 // T_kk = 1/alpha_k + beta_(k-1)/alpha_(k-1), T_k,k+1 = sqrt(beta_k)/alpha_k
-double smallest_ritz_value(const LanczosCoefficients& coefficients) {
+double smallest_ritz_value(const LanczosCoefficients& coefficients, int steps) {
     double smallest = std::numeric_limits<double>::infinity();
     const std::size_t channels = coefficients.alpha.empty() ? 0 : coefficients.alpha[0].size();
     for (std::size_t c = 0; c < channels; ++c) {
         std::vector<double> diagonal, off;
-        for (std::size_t k = 0; k < coefficients.alpha.size() && coefficients.alpha[k][c] != 0; ++k) {
+        const std::size_t count = std::min<std::size_t>(steps, coefficients.alpha.size());
+        for (std::size_t k = 0; k < count && coefficients.alpha[k][c] != 0; ++k) {
             diagonal.push_back(1 / coefficients.alpha[k][c] + (k > 0 ? coefficients.beta[k - 1][c] / coefficients.alpha[k - 1][c] : 0.0));
             off.push_back(std::sqrt(std::max(0.0, coefficients.beta[k][c])) / coefficients.alpha[k][c]);
         }

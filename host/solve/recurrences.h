@@ -28,7 +28,7 @@ struct LanczosCoefficients {
 /// One pass an iteration, and some three passes' traffic beside it.
 void iterate_conjugate_gradients(DeviceOperator& A, const Part& part, const Field& m, Field& x, Monitor& monitor, LanczosCoefficients* coefficients = nullptr);
 
-/// Smallest eigenvalue of the Lanczos matrices of all channels.
-double smallest_ritz_value(const LanczosCoefficients& coefficients);
+/// Smallest eigenvalue of the Lanczos matrices that the first `steps` steps make, over all channels.
+double smallest_ritz_value(const LanczosCoefficients& coefficients, int steps);
 
 }  // namespace lcl

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "host/apply/host_arrays.h"
 #include "host/solve/curves.h"
 #include "host/solve/recurrences.h"
 
@@ -36,13 +37,19 @@ public:
         if (options.progress) progress = [call = options.progress, unit](int iteration, double residual, double goal) { return call(iteration, residual * unit, goal * unit); };
         monitor_ = std::make_unique<Monitor>(exact ? options.exact_sweeps : options.max_iterations, target, progress, exact);
         choose();
+        if (solver_ == Solver::conjugate_gradients) monitor_->allow_growth();
     }
 
-    /// Curves and corners are solved before, and the device iterates on what is left.
-    bool solves_curves_first() const { return part_.first_row > system_.plan().curves.first_row && !is_refused(); }
-    Solver solver() const { return solver_; }
+    /// Rows before these are solved directly, and the device iterates on what is left.
+    Index first_iterated_row() const { return is_refused() ? 0 : part_.first_row; }
     Monitor& monitor() { return *monitor_; }
-    SolveReport& report() { return report_; }
+
+    /// Corners and curves, in double: rows [0, first_iterated_row()) of p from those of m. p holds at least these rows.
+    void solve_directly(const std::vector<double>& m, std::vector<double>& p, int channels) const {
+        const Plan& plan = system_.plan();
+        std::copy_n(m.begin(), static_cast<std::size_t>(plan.fixed.row_count) * channels, p.begin());
+        if (first_iterated_row() > plan.curves.first_row) solve_curves(plan, m, p, channels);
+    }
 
     void run(const Field& m, Field& x) {
         if (is_refused()) return measure(m, x);
@@ -80,7 +87,7 @@ public:
                          : converged                                   ? SolveStatus::converged
                                                                        : SolveStatus::not_converged;
         if (report_.status == SolveStatus::converged) return;
-        report_.message = spectrum.message.empty() ? reason() : spectrum.message;
+        report_.message = !spectrum.message.empty() ? spectrum.message : spectrum.warning.empty() ? reason() : reason() + "; " + spectrum.warning;
         report_.vertices = spectrum.message.empty() ? system_.weakest : spectrum.vertices;
     }
 
@@ -216,15 +223,17 @@ private:
 
     std::string reason() const {
         const std::string after = " after " + std::to_string(monitor_->iteration()) + " iterations";
+        const char* other = options_.solver == Solver::automatic ? ": allow more iterations, or use a larger alpha" : ": use solver auto";
         switch (monitor_->outcome()) {
-            case Outcome::diverged: {
-                const char* advice = solver_ == Solver::jacobi ? ": Jacobi is sure to converge only under diagonal dominance (lambda of 1/3 or more), use auto" : ": use auto";
-                return "the residual grows, this iteration does not converge on this operator" + after + advice;
-            }
-            case Outcome::stalled: return "the residual no longer falls" + after + (options_.precision == Precision::single ? ": single precision ends here, use mixed" : ": use auto or a larger alpha");
+            case Outcome::diverged:
+                return "the residual grows, this iteration does not converge on this operator" + after +
+                       (solver_ == Solver::jacobi ? ": Jacobi is sure to converge only under diagonal dominance (lambda of 1/3 or more), use auto" : other);
+            case Outcome::stalled: return "the residual no longer falls" + after + (options_.precision == Precision::single ? ": single precision ends here, use mixed" : other);
             case Outcome::indefinite: return "a negative eigenvalue was met, the limit operator is indefinite: use a larger alpha (0.5; alpha auto does so) or a lambda above 0";
-            default: return "the tolerance was not reached" + after + ": allow more iterations or use solver auto";
+            case Outcome::converged: return "the values are kept in float, which cannot hold them to this tolerance: use fields of double precision";
+            case Outcome::exhausted: break;
         }
+        return "the tolerance was not reached" + after + other;
     }
 
     LimitSystem& system_;
@@ -240,18 +249,15 @@ private:
     SolveReport report_;
 };
 
-Real real_of(Precision precision) { return precision == Precision::mixed ? Real::wide : precision == Precision::single ? Real::single : Real::full; }
-
-/// Bound of the distance to the exact solution, part by part: fixed rows exactly, curves at most 1/(2 a_ii - 1) times, then the smooth block with what the curves' error adds to its residual.
+/// Bound of the distance to the exact solution, part by part: fixed rows are off by their residual, curves by at most 1/(2 a_ii - 1) times it, the smooth block by |A^-1|_inf times its
+/// residual and what the error of the other rows adds to it. NaN with darts.
 double error_bound(LimitSystem& system, double max_error) {
     const Plan& plan = system.plan();
     if (plan.has_darts()) return nan;
-    double curve_error = 0;
-    for (Index row = plan.curves.first_row; row < plan.curves.end_row(); ++row) curve_error = std::max(curve_error, max_error / (2 * plan.diagonal[row] - 1));
-    const double fixed_error = std::max(max_error, curve_error);
-    if (plan.smooth.row_count == 0) return plan.curves.row_count > 0 ? curve_error : 0;
-    const bool alone = plan.curves.row_count == 0 && plan.fixed.row_count == plan.isolated_count;
-    return std::max(fixed_error, inverse_norm_of(system).value * (max_error + (alone ? 0 : curve_error)));
+    double outer_error = plan.fixed.row_count > plan.isolated_count ? max_error : 0;
+    for (Index row = plan.curves.first_row; row < plan.curves.end_row(); ++row) outer_error = std::max(outer_error, max_error / (2 * plan.diagonal[row] - 1));
+    if (plan.smooth.row_count == 0) return outer_error;
+    return std::max(outer_error, inverse_norm_of(system).value * (max_error + outer_error));
 }
 
 void certify(LimitSystem& system, const SolveOptions& options, SolveReport& report) {
@@ -259,21 +265,29 @@ void certify(LimitSystem& system, const SolveOptions& options, SolveReport& repo
     if (options.certify && has_inverse) report.surface_error_bound = error_bound(system, report.max_error);
 }
 
+Field widened(DeviceOperator& A, const Field& field) {
+    Field wide = A.make_field(field.channels(), Real::wide);
+    wide.fill_zero();
+    A.correct(field, wide, {0, field.rows(), 0, 0});
+    return wide;
+}
+
+/// Residual of what the fields hold, in double or pairs whatever their precision.
+ResidualNorms device_residual(DeviceOperator& A, const Field& m, const Field& x) {
+    const Part all = A.plan().all_rows();
+    Field r = A.make_field(x.channels(), x.real());
+    if (x.real() == Real::single) {
+        A.wide_residual(widened(A, m), widened(A, x), r, all);
+        return A.norms(r, all);
+    }
+    A.sweep({0, 1, 0, 0}, m, x, nullptr, r, all);
+    return A.norms(x, all);
+}
+
 void refuse_ghosts(const Plan& plan) {
     if (plan.row_count < plan.vertex_count)
         throw Unsupported("this operator has rows for " + std::to_string(plan.row_count) + " of its " + std::to_string(plan.vertex_count) +
                           " vertices: drive its parts by single sweeps (lcl_operator_step) and exchange the ghosts between them");
-}
-
-/// Values of the fixed rows, which come back to the bit.
-std::vector<double> kept_rows(const Plan& plan, const double* M, std::size_t stride, int channels) {
-    std::vector<double> kept;
-    for (Index row = 0; row < plan.fixed.end_row(); ++row) kept.insert(kept.end(), M + plan.vertex_of_row[row] * stride, M + plan.vertex_of_row[row] * stride + channels);
-    return kept;
-}
-
-void restore_rows(const Plan& plan, const std::vector<double>& kept, int channels, double* P, std::size_t stride) {
-    for (Index row = 0; row < plan.fixed.end_row(); ++row) std::copy_n(&kept[static_cast<std::size_t>(row) * channels], channels, P + plan.vertex_of_row[row] * stride);
 }
 
 }  // namespace
@@ -283,16 +297,15 @@ SolveReport solve_host(LimitSystem& system, const double* M, std::size_t stride,
     refuse_ghosts(plan);
     const auto start = std::chrono::steady_clock::now();
     const Transform transform = fit_transform(plan, M, stride, channels);
-    const double unit = 1 / transform.scale[0];
-    Solve solve(system, options, unit);
+    Solve solve(system, options, 1 / transform.scale[0]);
     const std::vector<double> m = to_plan_order(plan, transform, M, stride, channels);
     std::vector<double> p = warm_start ? to_plan_order(plan, transform, P, P_stride, channels) : m;
-    if (solve.solves_curves_first()) {
+    if (solve.first_iterated_row() > plan.isolated_count) {
         solve.monitor().begin_with(host_residual(plan, m, p, channels));
-        std::copy_n(m.begin(), static_cast<std::size_t>(plan.fixed.row_count) * channels, p.begin());
-        solve_curves(plan, m, p, channels);
+        solve.solve_directly(m, p, channels);
     }
-    Field device_m = system.A->make_field(channels, real_of(options.precision)), device_p = system.A->make_field(channels, real_of(options.precision));
+    const Real real = real_of(options.precision);
+    Field device_m = system.A->make_field(channels, real), device_p = system.A->make_field(channels, real);
     device_m.upload(m.data(), 0, plan.vertex_count);
     device_p.upload(p.data(), 0, plan.vertex_count);
     const double seconds_upload = seconds_since(start);
@@ -300,16 +313,15 @@ SolveReport solve_host(LimitSystem& system, const double* M, std::size_t stride,
     const auto solve_start = std::chrono::steady_clock::now();
     solve.run(device_m, device_p);
     SolveReport& report = solve.conclude();
+    report.seconds_upload = seconds_upload;
     report.seconds_solve = seconds_since(solve_start);
 
     const auto download_start = std::chrono::steady_clock::now();
     device_p.download(p.data(), 0, plan.vertex_count);
-    const ResidualNorms norms = host_residual(plan, m, p, channels);
+    solve.judge(host_residual(plan, m, p, channels));
     const std::vector<double> kept = kept_rows(plan, M, stride, channels);  // P may be M
     from_plan_order(plan, transform, p, channels, P, P_stride);
     restore_rows(plan, kept, channels, P, P_stride);
-    solve.judge(norms);
-    report.seconds_upload = seconds_upload;
     report.seconds_download = seconds_since(download_start);
     certify(system, options, report);
     return report;
@@ -318,41 +330,28 @@ SolveReport solve_host(LimitSystem& system, const double* M, std::size_t stride,
 SolveReport solve_fields(LimitSystem& system, const Field& M, const Transform& transform, const SolveOptions& options, bool warm_start, Field& P) {
     const Plan& plan = system.plan();
     refuse_ghosts(plan);
-    DeviceOperator& A = *system.A;
     const auto start = std::chrono::steady_clock::now();
     Solve solve(system, options, 1 / transform.scale[0]);
     if (!warm_start) P.copy_from(M);
-    if (solve.solves_curves_first()) {
-        Field r = A.make_field(M.channels(), M.real());
-        A.sweep({0, 1, 0, 0}, M, P, nullptr, r, plan.all_rows());
-        solve.monitor().begin_with(A.norms(P, plan.all_rows()));
-        const Index rows = plan.curves.end_row();
-        std::vector<double> m(static_cast<std::size_t>(rows) * M.channels());
-        M.download(m.data(), 0, rows);
+    if (solve.first_iterated_row() > plan.isolated_count) {
+        solve.monitor().begin_with(device_residual(*system.A, M, P));
+        std::vector<double> m(static_cast<std::size_t>(solve.first_iterated_row()) * M.channels());
+        M.download(m.data(), 0, solve.first_iterated_row());
         std::vector<double> p = m;
-        solve_curves(plan, m, p, M.channels());
-        P.upload(p.data(), 0, rows);
+        solve.solve_directly(m, p, M.channels());
+        P.upload(p.data(), 0, solve.first_iterated_row());
     }
-    const bool widens = options.precision == Precision::mixed && M.real() == Real::single;
-    Part every_row = plan.all_rows();
-    ResidualNorms norms;
-    if (widens) {
-        Field m = A.make_field(M.channels(), Real::wide), p = A.make_field(M.channels(), Real::wide), r = A.make_field(M.channels(), Real::single);
-        m.fill_zero(), A.correct(M, m, every_row);
-        p.fill_zero(), A.correct(P, p, every_row);
+    if (options.precision == Precision::mixed && M.real() == Real::single) {
+        const Field m = widened(*system.A, M);
+        Field p = widened(*system.A, P);
         solve.run(m, p);
-        A.wide_residual(m, p, r, every_row);
-        norms = A.norms(r, every_row);
-        A.narrow(p, P);
+        system.A->narrow(p, P);
     } else {
         solve.run(M, P);
-        Field r = A.make_field(M.channels(), M.real());
-        A.sweep({0, 1, 0, 0}, M, P, nullptr, r, every_row);
-        norms = A.norms(P, every_row);
     }
     SolveReport& report = solve.conclude();
     report.seconds_solve = seconds_since(start);
-    solve.judge(norms);
+    solve.judge(device_residual(*system.A, M, P));
     certify(system, options, report);
     return report;
 }

@@ -6,13 +6,13 @@
 #include <string>
 #include <vector>
 
+#include "host/apply/host_arrays.h"
 #include "host/solve/limit_system.h"
 #include "host/solve/monitor.h"
 
 namespace lcl {
 
 enum class Solver { automatic, pia, wpia, jacobi, gauss_seidel, gauss_seidel_coloured, chebyshev, conjugate_gradients };  // order of lcl_solver
-enum class Precision { mixed, single, full };                                                                            // order of lcl_precision
 
 struct SolveOptions {
     Solver solver = Solver::automatic;
@@ -47,7 +47,8 @@ struct SolveReport {
 /// In P fixed and isolated rows hold M's values to the bit, warm start or not. Unsupported on operators with ghosts.
 SolveReport solve_host(LimitSystem& system, const double* M, std::size_t stride, int channels, const SolveOptions& options, bool warm_start, double* P, std::size_t P_stride);
 
-/// The same on fields of one transform that stay on the device; P holds P_0 where warm_start. max_error is the device's: in double or pairs where precision is mixed.
+/// The same on fields of one transform that stay on the device; P holds P_0 where warm_start. max_error is that of the values that P then
+/// holds, computed on the device in double (or pairs of floats).
 SolveReport solve_fields(LimitSystem& system, const Field& M, const Transform& transform, const SolveOptions& options, bool warm_start, Field& P);
 
 }  // namespace lcl

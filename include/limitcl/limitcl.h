@@ -168,7 +168,7 @@ LCL_API lcl_status lcl_mesh_create(const lcl_mesh_data* data, lcl_mesh* mesh);
 LCL_API lcl_status lcl_mesh_read(const char* path, lcl_format format, lcl_mesh* mesh);
 /** The same from bytes in memory; `name` stands in messages. */
 LCL_API lcl_status lcl_mesh_read_memory(const void* bytes, size_t size, lcl_format format, const char* name, lcl_mesh* mesh);
-/** Writes completely or not at all. What the format cannot hold is added to the notes of kind LCL_NOTE_WARNING. path "-" is standard output and needs a format. */
+/** Writes completely or not at all, a sound mesh. Counts as a change of the mesh: what the format cannot hold is added to its notes of kind LCL_NOTE_WARNING. path "-" is standard output and needs a format. */
 LCL_API lcl_status lcl_mesh_write(lcl_mesh mesh, const char* path, lcl_format format);
 /** The format that a path's ending names. */
 LCL_API lcl_status lcl_format_of_path(const char* path, lcl_format* format);
@@ -270,7 +270,7 @@ typedef struct lcl_scheme_options {
     lcl_scheme scheme;
     lcl_mask mask;            /**< Doo-Sabin */
     double alpha;             /**< Catmull-Clark, 0 to 1: rule of the first refinement (mesh expansion paper) */
-    int32_t alpha_auto;       /**< 1: alpha is 0, or 0.5 where 0 is singular, indefinite, or has an estimated lambda_min below 0.05 */
+    int32_t alpha_auto;       /**< 1 (for operators; alpha is left at 0): alpha is 0, or 0.5 where 0 is singular, indefinite, or has an estimated lambda_min below 0.05 */
     double lambda;            /**< Catmull-Clark, 0 to 1: two-phase blend ratio, A_lambda = lambda E + (1 - lambda) A (two-phase paper, eq. 5) */
     const double* lambda_per_vertex; /**< NULL, or one ratio a vertex; rules over lambda */
     const int32_t* subset;    /**< NULL, or the vertices to interpolate: the others keep their control points (identity rows) */
@@ -317,8 +317,9 @@ typedef struct lcl_diagnosis {
 /** What can be said of the spectrum before solving. Some 20 passes at the first call, then remembered. */
 LCL_API lcl_status lcl_operator_diagnose(lcl_operator A, lcl_diagnosis* diagnosis);
 
-/** Limit points, out = A points, through host memory: n x channels, rows `stride` values apart (0: channels). out may be points. One pass, in the given precision. */
 typedef enum lcl_precision { LCL_PRECISION_MIXED = 0 /**< float sweeps, residuals and corrections in double or float pairs */, LCL_PRECISION_SINGLE = 1, LCL_PRECISION_DOUBLE = 2 } lcl_precision;
+
+/** Limit points, out = A points, through host memory: n x channels, rows `stride` values apart (0: channels). out may be points. One pass, in the given precision. */
 LCL_API lcl_status lcl_limit_points(lcl_operator A, const double* points, size_t stride, int32_t channels, lcl_precision precision, double* out, size_t out_stride);
 
 /* ---------------------------------------------------------------- solving A P = M */
@@ -356,8 +357,9 @@ typedef struct lcl_solve_report {
     size_t residual_capacity;   /**< its size */
     size_t residual_count;      /**< iterations + 1 */
     double lambda_min;          /**< estimate, NaN if none */
-    double max_error;           /**< the final residual recomputed in double on the host, model units */
-    double surface_error_bound; /**< with certify: bound of the distance to the exact solution's surface, model units; NaN without, and where none is known. See lcl_operator_inverse_norm */
+    double max_error;           /**< the final residual recomputed in double, model units */
+    double surface_error_bound; /**< with certify: bound of the distance to the exact solution's surface, model units, by the inverse norm
+                                     of lcl_operator_inverse_norm; NaN without, and where none is known (darts) */
     double channel_error;       /**< the same residual of further channels, relative to their ranges; 0 without */
     double seconds_upload, seconds_solve, seconds_download;
     int32_t vertices[10], vertex_count; /**< where it is singular or indefinite */
@@ -368,7 +370,7 @@ typedef struct lcl_solve_report {
 /** Control points P with A P = M, through host memory: n x channels each, rows `stride` values apart (0: channels). P may be M.
  *  PIA: P += R (mesh expansion paper; Doo-Sabin paper). W-PIA: P += w R, GS-PIA: newest neighbours (Loop PIA paper). Jacobi: P_i += R_i / A_ii (two-phase paper, eq. 6).
  *  Chebyshev and CG: A is self-adjoint under D. AUTO: the fastest that is sure to converge. Vertices outside the subset, corners and isolated ones keep their points.
- *  LCL_OK: converged (or exact_sweeps done). LCL_ERROR_SINGULAR, _INDEFINITE, _NOT_CONVERGED: P and report hold what there is. report may be NULL. */
+ *  LCL_OK: converged (or exact_sweeps done, on an operator that is not singular or indefinite). LCL_ERROR_SINGULAR, _INDEFINITE, _NOT_CONVERGED: P and report hold what there is. report may be NULL. */
 LCL_API lcl_status lcl_interpolate(lcl_operator A, const double* M, size_t stride, int32_t channels, const lcl_solve_options* options, double* P, size_t P_stride,
                                    lcl_solve_report* report);
 /** The same on the points of a mesh (which must be the one that A was made from, or one with its faces): replaces them by P. */
@@ -385,7 +387,7 @@ LCL_API int32_t lcl_task_is_done(lcl_task task);
 LCL_API void lcl_task_release(lcl_task task);
 
 /** |A^-1|_inf of the smooth block, for error bounds: 1/min(2 a_ii - 1) where rows are diagonally dominant (then `proven` is 1), else estimated by block Hager-Higham (a few
- *  solves at the first call, then remembered). LCL_ERROR_UNSUPPORTED where A has no self-adjoint form (darts). */
+ *  solves at the first call, then remembered; an estimate lies below the norm, by a few percent as a rule; NaN where the solves do not end). LCL_ERROR_UNSUPPORTED where A has no self-adjoint form (darts). */
 LCL_API lcl_status lcl_operator_inverse_norm(lcl_operator A, double* norm, int32_t* proven);
 
 /* ---------------------------------------------------------------- fields: values that stay on the device */
@@ -397,10 +399,10 @@ LCL_API void lcl_field_retain(lcl_field field);
 LCL_API void lcl_field_release(lcl_field field);
 LCL_API int32_t lcl_field_channels(lcl_field field);
 /** Host to device and back: n rows in the caller's vertex order, `stride` values apart (0: channels). upload returns when `values` may be changed; download when they are there.
- *  The first upload of a field sets the centre and scale that its floats are kept in (a field of the same operator can take over those of another: lcl_field_match). */
+ *  The first upload of a field sets the centre and scale that its floats are kept in (lcl_field_match: those of another field). */
 LCL_API lcl_status lcl_field_upload(lcl_field field, const void* values, lcl_type type, size_t stride);
 LCL_API lcl_status lcl_field_download(lcl_field field, void* values, lcl_type type, size_t stride);
-/** Gives `field` the centre and scale of `of`, so that both can stand in one formula. */
+/** Gives `field` the centre and scale of `of`, so that both can stand in one formula: before its first upload, or where they are the same. `of` may belong to another operator. */
 LCL_API lcl_status lcl_field_match(lcl_field field, lcl_field of);
 /** Single rows by vertex: count x channels, doubles. For halo exchange between the parts of a cluster. */
 LCL_API lcl_status lcl_field_read_vertices(lcl_field field, const int32_t* vertices, size_t count, double* values);
@@ -424,7 +426,7 @@ typedef struct lcl_refine_options {
 } lcl_refine_options;
 #define LCL_REFINE_OPTIONS_INIT { (uint32_t)sizeof(lcl_refine_options), 0 }
 
-/** Refines uniformly, in double on the host. alpha and lambda rule the first refinement alone (lambda: the two-phase first step, which gives the mesh M^1); the result is read with
+/** Refines uniformly, in double on the host. alpha_auto, subset and owned are not looked at. alpha and lambda rule the first refinement alone (lambda: the two-phase first step, which gives the mesh M^1); the result is read with
  *  alpha 0 and lambda 0, and carries refined creases and corners. Colours and scalar properties are refined as channels; texture coordinates are dropped with a note. */
 LCL_API lcl_status lcl_mesh_refine(lcl_mesh mesh, const lcl_scheme_options* scheme, const lcl_refine_options* options, lcl_mesh* refined);
 /** Where each vertex of a refined mesh lies on the original's surface, in the parameters of `limitcl evaluate`: faces (-1: isolated) and corners: vertex_count; uv: vertex_count x 2. */

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the mesh alone says about the solvability of A P = M.
+// What the mesh alone says of a scheme on it: whether it fits, and whether A P = M can be solved.
 #pragma once
 
 #include <string>
@@ -16,7 +16,7 @@ struct Objection {
     std::vector<Index> vertices, faces;  ///< the first ten
 };
 
-/// Loop on faces that are no triangles; parameters out of range.
+/// Loop on faces that are no triangles.
 Objection scheme_objection(const Topology& topology, const SchemeOptions& options);
 
 /// Exact criterion: Catmull-Clark with alpha = lambda = 0 is singular exactly when a closed smooth component, all of it interpolated, has only valence 3 and a bipartite edge graph (cube, even

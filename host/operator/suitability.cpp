@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "host/operator/singular.h"
+#include "host/operator/suitability.h"
 
 #include <algorithm>
 
 namespace lcl {
 namespace {
-
-bool in_unit_interval(double value) { return value >= 0 && value <= 1; }
 
 /// Two-colours the component of `seed` along its edges; false at an odd cycle. `members` receives the component, true or not.
 bool two_colour(const Topology& t, Index seed, std::vector<std::int8_t>& colour, std::vector<Index>& members) {
@@ -38,16 +36,12 @@ std::string list(const std::vector<Index>& vertices) {
 
 Objection scheme_objection(const Topology& topology, const SchemeOptions& options) {
     Objection objection;
-    if (options.scheme == Scheme::loop) {
-        for (Index f = 0; f < topology.face_count && objection.faces.size() < 10; ++f)
-            if (topology.degree(f) != 3) objection.faces.push_back(f);
-        if (!objection.faces.empty())
-            objection.message = "face " + std::to_string(objection.faces[0]) + " has " + std::to_string(topology.degree(objection.faces[0])) +
-                                " sides, and Loop subdivision takes triangles only: use catmull-clark or doo-sabin, or triangulate the mesh";
-        return objection;
-    }
-    if (!in_unit_interval(options.alpha)) objection.message = "alpha is " + std::to_string(options.alpha) + ", it goes from 0 to 1";
-    if (!in_unit_interval(options.lambda)) objection.message = "lambda is " + std::to_string(options.lambda) + ", it goes from 0 to 1";
+    if (options.scheme != Scheme::loop) return objection;
+    for (Index f = 0; f < topology.face_count && objection.faces.size() < 10; ++f)
+        if (topology.degree(f) != 3) objection.faces.push_back(f);
+    if (!objection.faces.empty())
+        objection.message = "face " + std::to_string(objection.faces[0]) + " has " + std::to_string(topology.degree(objection.faces[0])) +
+                            " sides, and Loop subdivision takes triangles only: use catmull-clark or doo-sabin, or triangulate the mesh";
     return objection;
 }
 

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The self-test through the C API: what a person runs first on a new device must pass here and name what it did.
+#include <set>
+
+#include "tests/capi_support.h"
+
+using namespace capi_test;
+
+namespace {
+
+struct Results {
+    std::set<std::string> kernels;
+    int count = 0, failed = 0;
+    static void note(void* user, const char* kernel, const char* what, double difference, double tolerance, int32_t passed) {
+        auto& own = *static_cast<Results*>(user);
+        INFO(kernel << ", " << what);
+        CHECK(what[0] != '\0');
+        CHECK(difference >= 0);
+        CHECK(tolerance > 0);
+        CHECK((passed != 0) == (difference <= tolerance));
+        own.kernels.insert(kernel);
+        ++own.count;
+        own.failed += !passed;
+    }
+};
+
+}  // namespace
+
+TEST_CASE("every kernel agrees with the plain host operator on every device", "[selftest][capi][device]") {
+    for (int32_t i = 0; i < lcl_device_count(); ++i) {
+        const Context context = open_context(std::to_string(i).c_str());
+        Results results;
+        succeed(lcl_context_selftest(context.get(), Results::note, &results));
+        CHECK(results.failed == 0);
+        CHECK(results.count > 20);
+        for (const char* kernel : {"lcl_limit_points", "lcl_relax", "lcl_relax_three_term", "lcl_residual", "lcl_correct", "lcl_narrow_rows", "lcl_relax_rows", "lcl_cg_apply", "lcl_cg_update",
+                                   "lcl_cg_direction", "lcl_import_points", "lcl_export_points"}) {
+            INFO(kernel);
+            CHECK(results.kernels.count(kernel) == 1);
+        }
+        CHECK(lcl_context_allocated_bytes(context.get()) == 0);
+    }
+}
+
+TEST_CASE("the self-test needs no callback", "[selftest][capi][device]") {
+    const Context context = open_context();
+    succeed(lcl_context_selftest(context.get(), nullptr, nullptr));
+}
