@@ -160,6 +160,11 @@ TEST_CASE("scheme options that make no sense are refused", "[capi][operator]") {
         expect(cube, "face 0 has 4 sides", LCL_ERROR_BAD_INPUT);
         CHECK(last_error_faces().at(0) == 0);
     }
+    SECTION("alpha given and automatic") {
+        options.alpha = 0.25;
+        options.alpha_auto = 1;
+        expect(cube, "alpha is given and alpha_auto is set");
+    }
     SECTION("a ratio of one vertex") {
         std::vector<double> ratios(8, 0.5);
         ratios[6] = -0.1;
@@ -230,8 +235,8 @@ TEST_CASE("wrong arguments of limit points and solves are refused", "[capi][oper
     refuse(solve(2, 3, 0), LCL_ERROR_INVALID_ARGUMENT, "stride is 2");
     refuse(solve(0, 3, 1), LCL_ERROR_INVALID_ARGUMENT, "P_stride is 1");
     M[3 * 4 + 1] = not_a_number;
-    refuse(limit(0, 3, 0, 0), LCL_ERROR_BAD_INPUT, "points of vertex 4 is nan in channel 1");
-    refuse(solve(0, 3, 0), LCL_ERROR_BAD_INPUT, "M of vertex 4 is nan in channel 1");
+    refuse(limit(0, 3, 0, 0), LCL_ERROR_BAD_INPUT, "channel 1 of vertex 4 is not finite");
+    refuse(solve(0, 3, 0), LCL_ERROR_BAD_INPUT, "channel 1 of vertex 4 is not finite");
     CHECK(last_error_vertices() == std::vector<int32_t>{4});
     CHECK(P == std::vector<double>(18, 7.0));
 }

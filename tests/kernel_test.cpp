@@ -27,16 +27,6 @@ struct Case {
     std::vector<std::uint8_t> subset, owned;
 };
 
-/// The device taken for one without double precision, so that pairs of floats run anywhere.
-const std::shared_ptr<Context>& context_without_double() {
-    static const std::shared_ptr<Context> context = [] {
-        DeviceInfo device = choose_device();
-        device.has_double = false;
-        return Context::create(device);
-    }();
-    return context;
-}
-
 class KernelCheck {
 public:
     KernelCheck(std::shared_ptr<Context> context, const Case& c, const Launching& launching, int channels, Real real)
@@ -357,6 +347,7 @@ TEST_CASE("kernels equal plain loops in the shape of a GPU, a work-group a block
     for (const Case& c : small_cases())
         for (const Real real : reals())
             for (const Launching& launching : {Launching{16, 33}, Launching{16, 1024}}) check(device_context(), c, launching, 3, real);
+    for (const Case& c : small_cases()) check(device_context(), c, {64, 150}, 3, Real::single);
 }
 
 TEST_CASE("kernels equal plain loops with 1 to 9 channels", "[kernel][channels]") {

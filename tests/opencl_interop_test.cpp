@@ -246,14 +246,13 @@ TEST_CASE("an export starts after the caller's events", "[interop][capi][device]
     const Operator A = make_operator(context.get(), make_mesh(shape).get());
     const FieldHandle field = make_field(A.get(), shape.mesh.positions, LCL_PRECISION_SINGLE);
     const Memory<float> memory(caller, std::vector<float>(shape.mesh.positions.size(), 0.0f));
-    succeed(lcl_field_export_cl(field.get(), memory.memory, 0, LCL_TYPE_FLOAT, 0, 0, nullptr, nullptr));  // kernels and the order of vertices are there now
-    succeed(lcl_context_finish(context.get()));
     const std::vector<float> nines(memory.count, 9.0f);
     const OwnedEvent gate(caller);
     OwnedEvent written, done;
     ok(clEnqueueWriteBuffer(caller.second_queue, memory.memory, CL_FALSE, 0, nines.size() * sizeof(float), nines.data(), 1, &gate.event, &written.event));
     ok(clFlush(caller.second_queue));
     succeed(lcl_field_export_cl(field.get(), memory.memory, 0, LCL_TYPE_FLOAT, 0, 1, &written.event, &done.event));
+    CHECK_FALSE(done.is_complete());
     gate.set();
     const std::vector<float> found = memory.read(done.event);  // not nine: the export came later
     CHECK(largest_difference({found.begin(), found.end()}, shape.mesh.positions) <= 4 * float_eps * diagonal_of(shape));
@@ -300,8 +299,8 @@ TEST_CASE("buffers that do not fit are refused before anything is put on the que
     };
     both(nullptr, memory.memory, 0, LCL_TYPE_FLOAT, 0, "field is NULL");
     both(field.get(), nullptr, 0, LCL_TYPE_FLOAT, 0, "memory is NULL");
-    both(field.get(), memory.memory, 4, LCL_TYPE_FLOAT, 0, "and the buffer has");
-    both(field.get(), memory.memory, 0, LCL_TYPE_FLOAT, 4, "and the buffer has");
+    both(field.get(), memory.memory, 4, LCL_TYPE_FLOAT, 0, "do not fit into the buffer's");
+    both(field.get(), memory.memory, 0, LCL_TYPE_FLOAT, 4, "do not fit into the buffer's");
     both(field.get(), memory.memory, 2, LCL_TYPE_FLOAT, 0, "not a multiple of a value's 4");
     both(field.get(), memory.memory, 0, LCL_TYPE_FLOAT, 2, "stride is 2");
     both(field.get(), memory.memory, 0, static_cast<lcl_type>(2), 0, "type is 2");
@@ -309,9 +308,9 @@ TEST_CASE("buffers that do not fit are refused before anything is put on the que
     refuse(lcl_field_export_cl(empty.get(), memory.memory, 0, LCL_TYPE_FLOAT, 0, 0, nullptr, nullptr), LCL_ERROR_INVALID_ARGUMENT, "holds no values yet");
     refuse(lcl_field_import_cl(field.get(), memory.memory, 0, LCL_TYPE_FLOAT, 0, 1, nullptr, nullptr), LCL_ERROR_INVALID_ARGUMENT, "events is NULL");
     const lcl_status too_large = lcl_field_import_cl(field.get(), memory.memory, std::numeric_limits<std::size_t>::max() - 3, LCL_TYPE_FLOAT, 0, 0, nullptr, nullptr);
-    refuse(too_large, LCL_ERROR_INVALID_ARGUMENT, "buffer has");
-    refuse(lcl_field_import_cl(field.get(), memory.memory, 0, LCL_TYPE_FLOAT, std::numeric_limits<std::size_t>::max() / 8, 0, nullptr, nullptr), LCL_ERROR_INVALID_ARGUMENT, "buffer has");
-    if (has_double()) both(field.get(), memory.memory, 0, LCL_TYPE_DOUBLE, 0, "and the buffer has");
+    refuse(too_large, LCL_ERROR_INVALID_ARGUMENT, "do not fit into the buffer's");
+    refuse(lcl_field_import_cl(field.get(), memory.memory, 0, LCL_TYPE_FLOAT, std::numeric_limits<std::size_t>::max() / 8, 0, nullptr, nullptr), LCL_ERROR_INVALID_ARGUMENT, "do not fit into the buffer's");
+    if (has_double()) both(field.get(), memory.memory, 0, LCL_TYPE_DOUBLE, 0, "do not fit into the buffer's");
     else CHECK(lcl_field_import_cl(field.get(), memory.memory, 0, LCL_TYPE_DOUBLE, 0, 0, nullptr, nullptr) == LCL_ERROR_UNSUPPORTED);
     CHECK(memory.read() == zeros);
 }

@@ -254,6 +254,4 @@ TEST_CASE("schemes that do not fit a mesh are refused with the faces", "[operato
     CHECK(objection.faces == std::vector<Index>{0, 1, 2, 3, 4, 5});
     CHECK(scheme_objection(cube, catmull_clark()).message.empty());
     CHECK(scheme_objection(build_topology(shapes::octahedron().mesh), loop()).message.empty());
-    CHECK(scheme_objection(cube, catmull_clark(1.5)).message == "alpha is 1.500000, it goes from 0 to 1");
-    CHECK(scheme_objection(cube, catmull_clark(0, -0.1)).message == "lambda is -0.100000, it goes from 0 to 1");
 }

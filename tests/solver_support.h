@@ -98,9 +98,19 @@ inline oracle::SparseMatrix matrix_of(const lcl::Plan& plan) {
     return a;
 }
 
-/// The default device, opened once for all tests.
+/// The default device, opened once for all tests. Never closed: when static objects go, some OpenCL implementations are gone already.
 inline const std::shared_ptr<lcl::Context>& device_context() {
-    static const std::shared_ptr<lcl::Context> context = lcl::Context::create(lcl::choose_device());
+    static const auto& context = *new std::shared_ptr<lcl::Context>(lcl::Context::create(lcl::choose_device()));
+    return context;
+}
+
+/// The same device taken for one without double precision, so that pairs of floats run anywhere.
+inline const std::shared_ptr<lcl::Context>& context_without_double() {
+    static const auto& context = *new std::shared_ptr<lcl::Context>([] {
+        lcl::DeviceInfo device = lcl::choose_device();
+        device.has_double = false;
+        return lcl::Context::create(device);
+    }());
     return context;
 }
 

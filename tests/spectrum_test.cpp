@@ -63,9 +63,8 @@ TEST_CASE("Catmull-Clark is singular on the cube, even prisms, the truncated oct
 
 TEST_CASE("the cube's message names the vertices and the cure", "[spectrum][singular]") {
     const Objection objection = singular_component(Prepared(shapes::cube()), catmull_clark());
-    CHECK(objection.message ==
-          "Catmull-Clark has no interpolating control mesh here: the closed component of vertices 0, 1, 2, ... (8) has only valence 3 and no odd cycle of edges, which makes its limit operator "
-          "singular: use alpha 0.5 (alpha auto does so) or a lambda above 0");
+    CHECK_THAT(objection.message, Catch::Contains("the closed component of vertices 0, 1, 2, ... (8) has only valence 3 and no odd cycle of edges"));
+    CHECK_THAT(objection.message, Catch::EndsWith(": use alpha 0.5 (alpha auto does so) or a lambda above 0"));
     CHECK(objection.vertices == std::vector<Index>{0, 1, 2, 3, 4, 5, 6, 7});
     const Objection second = singular_component(Prepared(shapes::combined(shapes::octahedron(), shapes::cube())), catmull_clark());
     CHECK(second.vertices == std::vector<Index>{6, 7, 8, 9, 10, 11, 12, 13});  // only this component is to blame

@@ -73,7 +73,8 @@ DeviceOperator::DeviceOperator(std::shared_ptr<Context> context, std::shared_ptr
 
 Buffer DeviceOperator::upload(const void* data, std::size_t bytes, const char* what) {
     Buffer buffer(context_, std::max<std::size_t>(bytes, 16), what);
-    if (bytes > 0) context_->write(buffer, 0, bytes, data, std::string("uploading ") + what);
+    // Not on the kernels' queue, where it would wait for what a caller has put there; nothing uses a new buffer yet.
+    if (bytes > 0) context_->write_async(buffer, 0, bytes, data, {}, std::string("uploading ") + what).wait();
     return buffer;
 }
 

@@ -150,6 +150,25 @@ VertexProperty* property_at(lcl_mesh mesh, int32_t index) {
     return mesh && index >= 0 && index < static_cast<int32_t>(mesh->file.properties.size()) ? &mesh->file.properties[index] : nullptr;
 }
 
+/// The range of a PLY integer type; false for the others.
+bool integer_range(const std::string& type, double& low, double& high) {
+    const auto is = [&](const char* name, const char* sized) { return type == name || type == sized; };
+    const bool is_unsigned = type.rfind("u", 0) == 0;
+    const int bits = is("char", "int8") || is("uchar", "uint8") ? 8 : is("short", "int16") || is("ushort", "uint16") ? 16 : is("int", "int32") || is("uint", "uint32") ? 32 : 0;
+    low = is_unsigned ? 0 : -std::ldexp(1, bits - 1);
+    high = std::ldexp(1, is_unsigned ? bits : bits - 1) - 1;
+    return bits > 0;
+}
+
+/// Makes a property a double where its integer type cannot hold its values (control values of channels).
+bool widen(VertexProperty& property) {
+    double low = 0, high = 0;
+    if (!integer_range(property.type, low, high)) return false;
+    const bool fits = std::all_of(property.values.begin(), property.values.end(), [&](double v) { return v == std::floor(v) && v >= low && v <= high; });
+    if (!fits) property.type = "double";
+    return !fits;
+}
+
 std::map<Index, Index> histogram(lcl_mesh_s& mesh, lcl_histogram which) {
     std::map<Index, Index> counts;
     if (which != LCL_HISTOGRAM_FACE_DEGREES && which != LCL_HISTOGRAM_VALENCES) throw InvalidArgument("which is " + std::to_string(which) + ", it is 0 (face degrees) or 1 (valences)");
@@ -417,6 +436,7 @@ lcl_status lcl_mesh_set_property(lcl_mesh mesh, const char* name, const double* 
         auto found = std::find_if(properties.begin(), properties.end(), [&](const VertexProperty& p) { return p.name == wanted; });
         if (found == properties.end()) found = properties.insert(properties.end(), {wanted, VertexProperty::Kind::scalar, "double", {}});
         found->values.assign(values, values + mesh->file.mesh.vertex_count);
+        if (widen(*found)) mesh->notes[LCL_NOTE_WARNING].push_back("the property '" + wanted + "' holds values now that its integer type cannot: it is kept as double");
         return LCL_OK;
     });
 }

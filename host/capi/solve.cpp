@@ -76,7 +76,7 @@ lcl_status interpolate(lcl_operator A, const double* M, std::size_t stride, int3
     check_channels(channels, stride, "stride");
     check_channels(channels, P_stride, "P_stride");
     options_or(report, LCL_SOLVE_REPORT_INIT, "report");  // refuses one without a size before any work
-    require_finite(required(M, "M"), stride, channels, system.plan().vertex_count, "M");
+    required(M, "M");
     required(P, "P");
     if (given.warm_start != 0) require_finite(P, P_stride, channels, system.plan().vertex_count, "P");
     return conclude(solve_host(system, M, stride, channels, inner_options(given), given.warm_start != 0, P, P_stride), given, report);

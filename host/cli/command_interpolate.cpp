@@ -131,7 +131,14 @@ void say_solve(Job& job, std::size_t further_channels) {
         job.terminal.say("residual", error_text(residuals.front(), diagonal) + " before, " + error_text(report.max_error, diagonal) + " after");
     if (further_channels > 0) job.terminal.say("channels", "largest residual " + short_number(report.channel_error) + " of their ranges");
     if (std::isfinite(report.surface_error_bound))
-        job.terminal.say("surface", "at most " + error_text(report.surface_error_bound, diagonal) + " from the exact one");
+        job.terminal.say("surface", "within about " + error_text(report.surface_error_bound, diagonal) + " of the exact one");
+}
+
+/// Exporters that split vertices at every seam make such meshes.
+void warn_if_all_fixed(Job& job) {
+    const lcl_mesh_info& info = job.report.mesh->info;
+    if (info.corners + info.isolated_vertices < info.vertices) return;
+    warn(job, "every vertex is a corner or isolated, so the mesh is its own control mesh: if its faces should hang together, weld vertices at equal positions first");
 }
 
 }  // namespace
@@ -147,11 +154,13 @@ void run_interpolate(Job& job) {
     note_scheme_in_use(job, A.get());
     say_scheme(job);
 
+    warn_if_all_fixed(job);
     std::vector<double> values = gather_values(mesh.get(), channels);
     const lcl_status status = solve(job, context.get(), A.get(), static_cast<std::int32_t>(3 + channels.size()), values);
     std::optional<Failure> failure;
     if (status != LCL_OK) failure = failure_of_result(status, job.report.solve->report);
-    say_solve(job, channels.size());
+    const bool was_solved = (status != LCL_ERROR_SINGULAR && status != LCL_ERROR_INDEFINITE) || job.options.keep_going || job.options.sweeps > 0;
+    if (was_solved) say_solve(job, channels.size());
     if (status == LCL_OK || status == LCL_ERROR_NOT_CONVERGED) warn_of_spectrum(job, A.get());
     if (failure && job.options.sweeps > 0) {
         warn(job, failure->message);

@@ -2,6 +2,7 @@
 // The one file that includes CLI11 (slow to compile).
 #include "host/cli/options.h"
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
@@ -150,6 +151,8 @@ private:
     CLI::App* add_command(const char* name, const char* text, bool reads_mesh, bool writes_mesh);
     void add_later(CLI::App& command, const std::string& flag, bool takes_value);
     std::string common_help(bool reads_mesh) const;
+    std::string help_page() const;
+    [[noreturn]] void refuse_extras(std::vector<std::string> extras) const;
     void refuse_what_is_not_there() const;
     void choose_scheme();
     void check_files() const;
@@ -345,13 +348,32 @@ void Parser::check_command() const {
         fail(exit_usage, "--levels 0 changes nothing without --limit: add it, or give a level from 1");
 }
 
+/// The page that lists what the command line should have held.
+std::string Parser::help_page() const {
+    const std::vector<CLI::App*> commands = app_.get_subcommands();
+    return "`limitcl " + (commands.empty() ? "" : commands.front()->get_name() + " ") + "--help`";
+}
+
+/// Words that are no option and no file: without a command the first of them was meant as one.
+void Parser::refuse_extras(std::vector<std::string> extras) const {
+    const auto is_option = [](const std::string& word) { return word.size() > 1 && word[0] == '-'; };
+    const auto first_word = std::find_if_not(extras.begin(), extras.end(), is_option);
+    if (app_.get_subcommands().empty() && first_word != extras.end())
+        fail(exit_usage, "there is no command '" + *first_word + "'; `limitcl --help` lists them");
+    const auto first_option = std::find_if(extras.begin(), extras.end(), is_option);
+    const std::string& culprit = first_option != extras.end() ? *first_option : extras.front();
+    fail(exit_usage, "'" + culprit + "' is not expected here; see " + help_page());
+}
+
 std::optional<int> Parser::parse(int argc, char** argv) {
     try {
         app_.parse(argc, argv);
     } catch (const CLI::Success& request) {
         return app_.exit(request, std::cout, std::cerr);
+    } catch (const CLI::ExtrasError&) {
+        refuse_extras(app_.remaining(true));
     } catch (const CLI::ParseError& error) {
-        fail(exit_usage, std::string(error.what()) + "; see limitcl --help");
+        fail(exit_usage, std::string(error.what()) + "; see " + help_page());
     }
     const std::vector<CLI::App*> commands = app_.get_subcommands();
     if (commands.empty()) fail(exit_usage, "no command; `limitcl --help` lists them");

@@ -149,12 +149,8 @@ struct LaunchSize {
     std::size_t global = 0, local = 0;
 };
 
-/// One argument of a kernel: a buffer, a scalar, or local memory.
-struct LocalMemory {
-    std::size_t bytes;
-};
+/// One argument of a kernel: a buffer or a scalar.
 void set_argument(cl_kernel kernel, unsigned place, const Buffer& buffer);  // an empty Buffer is InvalidArgument: kernels take no null pointers
-void set_argument(cl_kernel kernel, unsigned place, LocalMemory local);
 void set_argument_bytes(cl_kernel kernel, unsigned place, const void* value, std::size_t bytes);
 template <class T>
 void set_argument(cl_kernel kernel, unsigned place, const T& value) {

@@ -40,6 +40,8 @@ public:
     /// One more iteration was made.
     void advance() { ++iteration_; }
 
+    /// The stage's residual fell to a thousandth: what stalls then is the precision, not the iteration.
+    bool stage_has_gained() const { return best_ >= 0 && best_ < 1e-3 * first_; }
     int iteration() const { return iteration_; }
     int max_iterations() const { return max_iterations_; }
     bool is_exact() const { return is_exact_; }

@@ -188,11 +188,17 @@ private:
 
     /// Chebyshev, and where nothing is proven (darts) PIA from there if it grows or stalls.
     void iterate_guarded_chebyshev(const Field& m, Field& x, Target target) {
+        const bool has_fallback = options_.solver == Solver::automatic && system_.plan().has_darts();
+        std::unique_ptr<Field> start;
+        if (has_fallback) {
+            start = std::make_unique<Field>(A_.make_field(x.channels(), x.real()));
+            start->copy_from(x);
+        }
         iterate_chebyshev(A_, part_, chebyshev_low(), m, x, *monitor_);
-        const bool failed = monitor_->outcome() == Outcome::diverged || monitor_->outcome() == Outcome::stalled;
-        if (options_.solver != Solver::automatic || !failed || !system_.plan().has_darts()) return;
+        const bool failed = monitor_->outcome() == Outcome::diverged || (monitor_->outcome() == Outcome::stalled && !monitor_->stage_has_gained());
+        if (!has_fallback || !failed) return;
         solver_ = Solver::pia;
-        x.fill_zero();
+        x.copy_from(*start);
         monitor_->begin_stage(target);
         iterate_stationary(A_, part_, 1, false, m, x, *monitor_);
     }
@@ -228,7 +234,9 @@ private:
             case Outcome::diverged:
                 return "the residual grows, this iteration does not converge on this operator" + after +
                        (solver_ == Solver::jacobi ? ": Jacobi is sure to converge only under diagonal dominance (lambda of 1/3 or more), use auto" : other);
-            case Outcome::stalled: return "the residual no longer falls" + after + (options_.precision == Precision::single ? ": single precision ends here, use mixed" : other);
+            case Outcome::stalled:
+                if (monitor_->history().back() < wide_floor) return "the tolerance lies below what the arithmetic reaches" + after + ": use a larger one";
+                return "the residual no longer falls" + after + (options_.precision == Precision::single ? ": single precision ends here, use mixed" : other);
             case Outcome::indefinite: return "a negative eigenvalue was met, the limit operator is indefinite: use a larger alpha (0.5; alpha auto does so) or a lambda above 0";
             case Outcome::converged: return "the values are kept in float, which cannot hold them to this tolerance: use fields of double precision";
             case Outcome::exhausted: break;

@@ -77,7 +77,7 @@ void judge(const LimitSystem& system, Spectrum& spectrum) {
     spectrum.indefinite = spectrum.smooth < -rounding;
     spectrum.singular = !spectrum.indefinite && spectrum.smooth <= rounding;
     if (spectrum.indefinite)
-        spectrum.message = "the limit operator is indefinite, it has the eigenvalue " + value + where + ", and no iteration is sure to converge: " + cure(system.scheme.scheme);
+        spectrum.message = "the limit operator is indefinite, it has an eigenvalue of about " + value + " or less" + where + ", and no iteration is sure to converge: " + cure(system.scheme.scheme);
     else if (spectrum.singular)
         spectrum.message = "the limit operator is singular to working precision, its smallest eigenvalue is about " + value + where + ": " + cure(system.scheme.scheme);
     else

@@ -248,7 +248,7 @@ LCL_API int32_t lcl_mesh_property_count(lcl_mesh mesh);
 LCL_API const char* lcl_mesh_property_name(lcl_mesh mesh, int32_t index);
 LCL_API int32_t lcl_mesh_property_is_colour(lcl_mesh mesh, int32_t index);
 LCL_API lcl_status lcl_mesh_get_property(lcl_mesh mesh, int32_t index, double* values /* vertex_count */);
-/** Sets the values of a property that is there (`name` exists) or adds one of type double. */
+/** Sets the values of a property that is there (`name` exists) or adds one of type double. An integer property becomes double, with a note, where it could not hold them. */
 LCL_API lcl_status lcl_mesh_set_property(lcl_mesh mesh, const char* name, const double* values);
 
 typedef enum lcl_note {
