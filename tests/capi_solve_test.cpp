@@ -612,8 +612,8 @@ TEST_CASE("the inverse's norm and the bound of the surface's error hold", "[capi
         const Eigen::MatrixXd rows = oracle_rows(shape, options);
         if (shape.features.corners.empty() && contains(shape.name, "random")) {  // closed: all is one smooth block
             const double exact = oracle::infinity_norm(rows.inverse());
-            CHECK(norm >= (proven ? exact * (1 - 1e-12) : 0.3 * exact));  // an estimate is a lower bound, seldom below a third
-            if (!proven) CHECK(norm <= exact * 1.01);
+            CHECK(norm >= (proven ? exact * (1 - 1e-12) : 0.9 * exact));  // an estimate lies below by a few percent as a rule
+            if (!proven) CHECK(norm <= exact * 1.04);  // 1.03 times a lower bound, from solves to 1e-4
         }
         lcl_solve_options solve = solve_options(LCL_SOLVER_AUTO);
         solve.certify = 1;

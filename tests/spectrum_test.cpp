@@ -150,7 +150,7 @@ TEST_CASE("a cube with split edges is indefinite at alpha 0 and not at alpha 0.5
     CHECK(!spectrum.singular);
     CHECK(std::isnan(spectrum.bound));
     CHECK(spectrum.estimate == Approx(-1.0 / 14).epsilon(0.05));
-    CHECK(spectrum.message.find("eigenvalue -0.07") != std::string::npos);
+    CHECK(spectrum.message.find("eigenvalue of about -0.07") != std::string::npos);
     REQUIRE(!spectrum.vertices.empty());
     for (const Index v : spectrum.vertices) CHECK(mesh.topology.vertex_face_count[v] == 2);
     const Solved refused = solve(*system, m, solve_options(Solver::automatic));
