@@ -23,56 +23,44 @@ struct Tag {
     std::vector<double> floats;
 };
 
-bool read_tag(const std::string& line, Tag& tag)
-{
+bool read_tag(const std::string& line, Tag& tag) {
     std::istringstream in(line);
     std::string statement;
     std::size_t integers = 0, floats = 0;
     char slash = 0;
-    if (!(in >> statement >> tag.name >> integers >> slash >> floats) || statement != "t")
-        return false;
+    if (!(in >> statement >> tag.name >> integers >> slash >> floats) || statement != "t") return false;
     std::string rest;
-    in >> rest; // "/nStrings"
+    in >> rest;  // "/nStrings"
     tag.integers.resize(integers);
     tag.floats.resize(floats);
-    for (int& value : tag.integers)
-        in >> value;
-    for (double& value : tag.floats)
-        in >> value;
+    for (int& value : tag.integers) in >> value;
+    for (double& value : tag.floats) in >> value;
     return static_cast<bool>(in);
 }
 
-void add_tag(const Tag& tag, bench::SharpMesh& mesh)
-{
+void add_tag(const Tag& tag, bench::SharpMesh& mesh) {
     const auto sharp = [&](std::size_t i) { return !tag.floats.empty() && tag.floats[tag.floats.size() == 1 ? 0 : i] >= infinitely_sharp; };
     if (tag.name == "crease")
         for (std::size_t i = 0; i + 1 < tag.integers.size(); ++i)
-            if (sharp(i))
-                mesh.creases.push_back({tag.integers[i], tag.integers[i + 1]});
+            if (sharp(i)) mesh.creases.push_back({tag.integers[i], tag.integers[i + 1]});
     if (tag.name == "corner")
         for (std::size_t i = 0; i < tag.integers.size(); ++i)
-            if (sharp(i))
-                mesh.corners.push_back(tag.integers[i]);
-    if (tag.name == "interpolateboundary")
-        mesh.boundary_edge_only = !tag.integers.empty() && tag.integers[0] == 2;
+            if (sharp(i)) mesh.corners.push_back(tag.integers[i]);
+    if (tag.name == "interpolateboundary") mesh.boundary_edge_only = !tag.integers.empty() && tag.integers[0] == 2;
 }
 
-void read_tags(const std::string& path, bench::SharpMesh& mesh)
-{
-    if (path.size() < 4 || path.substr(path.size() - 4) != ".obj")
-        return;
+void read_tags(const std::string& path, bench::SharpMesh& mesh) {
+    if (path.size() < 4 || path.substr(path.size() - 4) != ".obj") return;
     std::ifstream file(path);
     for (std::string line; std::getline(file, line);) {
         Tag tag;
-        if (read_tag(line, tag))
-            add_tag(tag, mesh);
+        if (read_tag(line, tag)) add_tag(tag, mesh);
     }
 }
 
 double distance(const double* a, const double* b) { return std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]); }
 
-void compare(const std::string& vertices_path, const std::string& control_path, const std::string& scheme)
-{
+void compare(const std::string& vertices_path, const std::string& control_path, const std::string& scheme) {
     const limitcl::Mesh M = limitcl::read_mesh(vertices_path), P = limitcl::read_mesh(control_path);
     if (M.face_vertices() != P.face_vertices() || M.face_degrees() != P.face_degrees() || M.vertex_count() != P.vertex_count())
         throw std::runtime_error(control_path + " does not have the faces of " + vertices_path);
@@ -90,17 +78,16 @@ void compare(const std::string& vertices_path, const std::string& control_path, 
     for (std::size_t v = 0; v < limit.found.size(); ++v) {
         ++count[static_cast<std::size_t>(limit.found[v])];
         const double here = limit.found[v] == bench::Found::left_out ? 0.0 : distance(&limit.points[3 * v], &expected[3 * v]);
-        if (!(here <= error)) // also if it is not a number
+        if (!(here <= error))  // also if it is not a number
             error = here, worst = v;
     }
     std::printf("{\"scheme\": \"%s\", \"by_mask\": %d, \"by_refinement\": %d, \"left_out\": %d, \"error\": %.3e, \"vertex\": %zu}\n",
                 loop ? "loop" : "catmull-clark", count[0], count[1], count[2], diagonal > 0 ? error / diagonal : error, worst);
 }
 
-} // namespace
+}  // namespace
 
-int main(int argc, char** argv)
-{
+int main(int argc, char** argv) {
     const std::string scheme = argc > 3 ? argv[3] : "";
     if (argc < 3 || argc > 4 || (!scheme.empty() && scheme != "loop" && scheme != "catmull-clark")) {
         std::fprintf(stderr, "usage: opensubdiv_compare M P [loop|catmull-clark]\n");

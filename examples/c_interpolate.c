@@ -11,16 +11,13 @@ enum { RING = 24, TUBE = 12, VERTICES = RING * TUBE };
 static double M[3 * VERTICES], P[3 * VERTICES], limit[3 * VERTICES];
 static int32_t faces[4 * VERTICES];
 
-static void check(lcl_status status)
-{
-    if (status == LCL_OK)
-        return;
+static void check(lcl_status status) {
+    if (status == LCL_OK) return;
     fprintf(stderr, "%s: %s\n", lcl_status_string(status), lcl_last_error());
     exit(1);
 }
 
-static void make_torus(void)
-{
+static void make_torus(void) {
     for (int i = 0; i < RING; ++i)
         for (int j = 0; j < TUBE; ++j) {
             const int v = i * TUBE + j, next_i = (i + 1) % RING, next_j = (j + 1) % TUBE;
@@ -35,8 +32,7 @@ static void make_torus(void)
         }
 }
 
-int main(void)
-{
+int main(void) {
     lcl_context context = NULL;
     lcl_mesh mesh = NULL;
     lcl_operator A = NULL;
@@ -59,8 +55,7 @@ int main(void)
     /* The limit points of P are M again. 1e-6 of the diagonal is the default tolerance; the torus measures 8 x 8 x 2. */
     double largest = 0.0;
     check(lcl_limit_points(A, P, 0, 3, LCL_PRECISION_MIXED, limit, 0));
-    for (int i = 0; i < 3 * VERTICES; ++i)
-        largest = fmax(largest, fabs(limit[i] - M[i]));
+    for (int i = 0; i < 3 * VERTICES; ++i) largest = fmax(largest, fabs(limit[i] - M[i]));
     printf("the limit surface of P passes within %.2e of every vertex of M\n", largest);
 
     lcl_operator_release(A);

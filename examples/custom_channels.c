@@ -12,23 +12,17 @@ enum { VERTICES = 6, FACES = 8, CHANNELS = 7, STRIDE = 8 }; /* rows may be longe
 static const int32_t faces[3 * FACES] = {0, 2, 4, 2, 1, 4, 1, 3, 4, 3, 0, 4, 2, 0, 5, 1, 2, 5, 3, 1, 5, 0, 3, 5};
 
 /* An octahedron.                                x     y     z   kelvin  red green blue unused */
-static const double M[STRIDE * VERTICES] = {  1.0,  0.0,  0.0,  290.0,  1.0, 0.0, 0.0, 0.0,
-                                             -1.0,  0.0,  0.0,  310.0,  0.0, 1.0, 0.0, 0.0,
-                                              0.0,  1.0,  0.0,  300.0,  0.0, 0.0, 1.0, 0.0,
-                                              0.0, -1.0,  0.0,  295.0,  1.0, 1.0, 0.0, 0.0,
-                                              0.0,  0.0,  1.0,  350.0,  0.0, 1.0, 1.0, 0.0,
-                                              0.0,  0.0, -1.0,  280.0,  1.0, 0.0, 1.0, 0.0};
+static const double M[STRIDE * VERTICES] = {1.0, 0.0, 0.0, 290.0, 1.0, 0.0, 0.0, 0.0, -1.0, 0.0,  0.0,  310.0, 0.0, 1.0, 0.0, 0.0,
+                                            0.0, 1.0, 0.0, 300.0, 0.0, 0.0, 1.0, 0.0, 0.0,  -1.0, 0.0,  295.0, 1.0, 1.0, 0.0, 0.0,
+                                            0.0, 0.0, 1.0, 350.0, 0.0, 1.0, 1.0, 0.0, 0.0,  0.0,  -1.0, 280.0, 1.0, 0.0, 1.0, 0.0};
 
-static void check(lcl_status status)
-{
-    if (status == LCL_OK)
-        return;
+static void check(lcl_status status) {
+    if (status == LCL_OK) return;
     fprintf(stderr, "%s: %s\n", lcl_status_string(status), lcl_last_error());
     exit(1);
 }
 
-int main(void)
-{
+int main(void) {
     static double P[STRIDE * VERTICES], limit[STRIDE * VERTICES];
     lcl_context context = NULL;
     lcl_mesh mesh = NULL;

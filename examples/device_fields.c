@@ -13,16 +13,13 @@ enum { RING = 16, TUBE = 8, VERTICES = RING * TUBE, FRAMES = 6, MOST_SWEEPS = 20
 static float points[3 * VERTICES];
 static int32_t faces[4 * VERTICES];
 
-static void check(lcl_status status)
-{
-    if (status == LCL_OK)
-        return;
+static void check(lcl_status status) {
+    if (status == LCL_OK) return;
     fprintf(stderr, "%s: %s\n", lcl_status_string(status), lcl_last_error());
     exit(1);
 }
 
-static void make_frame(double time)
-{
+static void make_frame(double time) {
     for (int i = 0; i < RING; ++i)
         for (int j = 0; j < TUBE; ++j) {
             const double u = 6.283185307179586 * i / RING, w = 6.283185307179586 * j / TUBE, r = 1.0 + 0.2 * sin(5.0 * u + time);
@@ -33,8 +30,7 @@ static void make_frame(double time)
         }
 }
 
-static lcl_operator make_operator(lcl_context context)
-{
+static lcl_operator make_operator(lcl_context context) {
     lcl_mesh mesh = NULL;
     lcl_operator A = NULL;
     lcl_mesh_data data = LCL_MESH_DATA_INIT;
@@ -56,8 +52,7 @@ static lcl_operator make_operator(lcl_context context)
     return A;
 }
 
-int main(void)
-{
+int main(void) {
     lcl_context context = NULL;
     lcl_field M = NULL, P = NULL, next = NULL;
     int first_sweeps = 0, sweeps = 0;
@@ -84,8 +79,7 @@ int main(void)
             P = next;
             next = swap;
         }
-        if (frame == 0)
-            first_sweeps = sweeps;
+        if (frame == 0) first_sweeps = sweeps;
         printf("frame %d: %d sweeps, residual before the last %.1e\n", frame, sweeps, residual);
     }
     check(lcl_field_download(P, points, LCL_TYPE_FLOAT, 0));

@@ -16,8 +16,7 @@ struct DoubleTraits : OpenMesh::DefaultTraits {
 using PolyMesh = OpenMesh::PolyMesh_ArrayKernelT<DoubleTraits>;
 
 // A prism over a pentagon: two pentagons and five quads.
-PolyMesh make_prism()
-{
+PolyMesh make_prism() {
     PolyMesh mesh;
     std::vector<OpenMesh::VertexHandle> low, high;
     const double x[] = {1.0, 0.31, -0.81, -0.81, 0.31}, y[] = {0.0, 0.95, 0.59, -0.59, -0.95};
@@ -33,24 +32,21 @@ PolyMesh make_prism()
     return mesh;
 }
 
-limitcl::Mesh to_limitcl(const PolyMesh& open_mesh)
-{
+limitcl::Mesh to_limitcl(const PolyMesh& open_mesh) {
     const limitcl::OpenMeshArrays arrays = limitcl::from_openmesh(open_mesh);
     std::vector<std::int32_t> degrees;
-    for (std::size_t f = 0; f + 1 < arrays.face_offsets.size(); ++f)
-        degrees.push_back(arrays.face_offsets[f + 1] - arrays.face_offsets[f]);
+    for (std::size_t f = 0; f + 1 < arrays.face_offsets.size(); ++f) degrees.push_back(arrays.face_offsets[f + 1] - arrays.face_offsets[f]);
     return limitcl::Mesh::from_faces(arrays.positions, degrees, arrays.face_vertices);
 }
 
-} // namespace
+}  // namespace
 
-int main()
-{
+int main() {
     try {
         PolyMesh open_mesh = make_prism();
         const limitcl::Mesh mesh = to_limitcl(open_mesh);
         const limitcl::Context context;
-        limitcl::SchemeOptions scheme; // every vertex has three edges: at alpha 0 this is nearly singular, and alpha_auto takes 0.5
+        limitcl::SchemeOptions scheme;  // every vertex has three edges: at alpha 0 this is nearly singular, and alpha_auto takes 0.5
         scheme.alpha_auto = true;
         const limitcl::LimitOperator A(context, mesh, scheme);
         const limitcl::Interpolation result = limitcl::interpolate(A, mesh.points());
@@ -63,8 +59,7 @@ int main()
         }
         const std::vector<double> limit = A.limit_points(to_limitcl(open_mesh).points()), M = mesh.points();
         double largest = 0;
-        for (std::size_t i = 0; i < M.size(); ++i)
-            largest = std::max(largest, std::abs(limit[i] - M[i]));
+        for (std::size_t i = 0; i < M.size(); ++i) largest = std::max(largest, std::abs(limit[i] - M[i]));
         std::printf("limit points of the OpenMesh: %.1e from the vertices\n", largest);
         return largest <= 5e-6 * mesh.info().diagonal ? 0 : 1;
     } catch (const std::exception& error) {

@@ -24,14 +24,30 @@ struct Error : std::runtime_error {
     Where where;
 };
 
-struct InvalidArgument : Error { using Error::Error; };  ///< an option or a call is wrong (exit 2)
-struct BadInput : Error { using Error::Error; };         ///< a mesh or a file's content is wrong (exit 3)
-struct Unsupported : Error { using Error::Error; };      ///< right, but not offered (here)
-struct FileError : Error { using Error::Error; };        ///< cannot be opened or read (exit 3)
-struct WriteError : Error { using Error::Error; };       ///< cannot be written (exit 1)
-struct NoDevice : Error { using Error::Error; };         ///< no such OpenCL device (exit 5)
-struct OutOfMemory : Error { using Error::Error; };      ///< too large for the device or the memory, with the numbers (exit 5)
-struct Cancelled : Error { using Error::Error; };        ///< the progress callback asked to stop (exit 130)
+struct InvalidArgument : Error {
+    using Error::Error;
+};  ///< an option or a call is wrong (exit 2)
+struct BadInput : Error {
+    using Error::Error;
+};  ///< a mesh or a file's content is wrong (exit 3)
+struct Unsupported : Error {
+    using Error::Error;
+};  ///< right, but not offered (here)
+struct FileError : Error {
+    using Error::Error;
+};  ///< cannot be opened or read (exit 3)
+struct WriteError : Error {
+    using Error::Error;
+};  ///< cannot be written (exit 1)
+struct NoDevice : Error {
+    using Error::Error;
+};  ///< no such OpenCL device (exit 5)
+struct OutOfMemory : Error {
+    using Error::Error;
+};  ///< too large for the device or the memory, with the numbers (exit 5)
+struct Cancelled : Error {
+    using Error::Error;
+};  ///< the progress callback asked to stop (exit 130)
 
 /// An OpenCL call failed: `what()` holds OpenCL's own name for the code, what was being done, and the build log if there is one.
 struct DeviceError : Error {

@@ -11,9 +11,10 @@
 
 namespace lcl {
 
-/// Calls body(begin, end) on contiguous pieces of [0, count), one piece a core; small loops stay on the calling thread. The pieces are disjoint, so results do not depend on their number
-/// as long as body writes only what belongs to its range. The first exception is thrown again here.
-template <class Body> void parallel_for(std::size_t count, const Body& body, std::size_t smallest_piece = 16384) {
+/// Calls body(begin, end) on contiguous pieces of [0, count), one piece a core; small loops stay on the calling thread. The pieces are disjoint, so results do
+/// not depend on their number as long as body writes only what belongs to its range. The first exception is thrown again here.
+template <class Body>
+void parallel_for(std::size_t count, const Body& body, std::size_t smallest_piece = 16384) {
     const std::size_t cores = std::max(1u, std::thread::hardware_concurrency());
     const std::size_t pieces = std::clamp<std::size_t>(count / std::max<std::size_t>(1, smallest_piece), 1, cores);
     if (pieces == 1) return body(std::size_t{0}, count);

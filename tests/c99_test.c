@@ -8,10 +8,8 @@
 
 static int failures = 0;
 
-static void expect(int holds, const char* fact)
-{
-    if (holds)
-        return;
+static void expect(int holds, const char* fact) {
+    if (holds) return;
     ++failures;
     fprintf(stderr, "does not hold: %s (last error: %s)\n", fact, lcl_last_error());
 }
@@ -21,8 +19,7 @@ static const int32_t octahedron_faces[24] = {0, 2, 4, 2, 1, 4, 1, 3, 4, 3, 0, 4,
 static const double cube_points[24] = {0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0, 0, 0, 1, 1, 0, 1, 1, 1, 1, 0, 1, 1};
 static const int32_t cube_faces[24] = {0, 3, 2, 1, 4, 5, 6, 7, 0, 1, 5, 4, 1, 2, 6, 5, 2, 3, 7, 6, 3, 0, 4, 7};
 
-static lcl_mesh make_mesh(int32_t vertices, const double* points, int32_t degree, int32_t face_count, const int32_t* faces)
-{
+static lcl_mesh make_mesh(int32_t vertices, const double* points, int32_t degree, int32_t face_count, const int32_t* faces) {
     lcl_mesh mesh = NULL;
     lcl_mesh_data data = LCL_MESH_DATA_INIT;
     data.vertex_count = vertices;
@@ -34,8 +31,7 @@ static lcl_mesh make_mesh(int32_t vertices, const double* points, int32_t degree
     return mesh;
 }
 
-static void test_version(void)
-{
+static void test_version(void) {
     expect(lcl_version() == LCL_VERSION_MAJOR * 10000 + LCL_VERSION_MINOR * 100 + LCL_VERSION_PATCH, "header and library have one version");
     expect(strcmp(lcl_version_string(), "0.1.0") == 0, "the version reads 0.1.0");
     expect(strcmp(lcl_status_string(LCL_ERROR_SINGULAR), "LCL_ERROR_SINGULAR") == 0, "a status has a name");
@@ -44,8 +40,7 @@ static void test_version(void)
 }
 
 /* Loop at an octahedron: the four neighbours of a vertex add up to zero, so A scales by alpha_4 = 3 / (11 - 8 (3/8 + (3/8 + 0)^2)) = 24/55. */
-static void test_octahedron(lcl_context context)
-{
+static void test_octahedron(lcl_context context) {
     double P[18], limit[18], residuals[201];
     lcl_operator A = NULL;
     lcl_solve_options options = LCL_SOLVE_OPTIONS_INIT;
@@ -72,8 +67,7 @@ static void test_octahedron(lcl_context context)
     lcl_operator_release(A);
 }
 
-static void test_singular_cube(lcl_context context)
-{
+static void test_singular_cube(lcl_context context) {
     double P[24];
     lcl_operator A = NULL, cured = NULL;
     lcl_scheme_options scheme = LCL_SCHEME_OPTIONS_INIT;
@@ -90,8 +84,7 @@ static void test_singular_cube(lcl_context context)
     lcl_mesh_release(mesh);
 }
 
-static void test_errors(lcl_context context)
-{
+static void test_errors(lcl_context context) {
     static const int32_t bad_index[3] = {0, 1, 905};
     int32_t vertices[10];
     lcl_mesh mesh = NULL;
@@ -121,15 +114,13 @@ static void test_errors(lcl_context context)
     lcl_context_release(NULL);
 }
 
-static int32_t cancel_at_once(void* user, int32_t iteration, double residual, double target)
-{
+static int32_t cancel_at_once(void* user, int32_t iteration, double residual, double target) {
     (void)iteration;
     *(int*)user += residual >= 0.0 && target > 0.0;
     return 0;
 }
 
-static void test_cancel(lcl_context context)
-{
+static void test_cancel(lcl_context context) {
     double P[18];
     int calls = 0;
     lcl_operator A = NULL;
@@ -144,13 +135,11 @@ static void test_cancel(lcl_context context)
     lcl_mesh_release(mesh);
 }
 
-int main(void)
-{
+int main(void) {
     lcl_context context = NULL;
     test_version();
     expect(lcl_context_create(NULL, &context) == LCL_OK, "the default device opens");
-    if (!context)
-        return failures;
+    if (!context) return failures;
     test_octahedron(context);
     test_singular_cube(context);
     test_errors(context);

@@ -67,16 +67,28 @@ TEST_CASE("a missing argument of a mesh function is refused by its name", "[capi
         {"features.creases", [&] { return lcl_mesh_add_features(mesh, &no_creases); }},
         {"features.corners", [&] { return lcl_mesh_add_features(mesh, &no_corners); }},
         {"mesh", [&] { return lcl_mesh_get_features(nullptr, nullptr, nullptr, nullptr, nullptr, nullptr); }},
-        {"mesh", [&] { lcl_mesh_info info = LCL_MESH_INFO_INIT; return lcl_mesh_get_info(nullptr, &info); }},
+        {"mesh",
+         [&] {
+             lcl_mesh_info info = LCL_MESH_INFO_INIT;
+             return lcl_mesh_get_info(nullptr, &info);
+         }},
         {"info", [&] { return lcl_mesh_get_info(mesh, nullptr); }},
         {"mesh", [&] { return lcl_mesh_get_histogram(nullptr, LCL_HISTOGRAM_VALENCES, nullptr, nullptr, 0, nullptr); }},
         {"mesh", [&] { return lcl_mesh_validate(nullptr); }},
-        {"mesh", [&] { lcl_defect defect = LCL_DEFECT_INIT; return lcl_mesh_get_defect(nullptr, 0, &defect); }},
+        {"mesh",
+         [&] {
+             lcl_defect defect = LCL_DEFECT_INIT;
+             return lcl_mesh_get_defect(nullptr, 0, &defect);
+         }},
         {"mesh", [&] { return lcl_mesh_get_property(nullptr, 0, points); }},
         {"mesh", [&] { return lcl_mesh_set_property(nullptr, "x", points); }},
         {"name", [&] { return lcl_mesh_set_property(mesh, nullptr, points); }},
         {"values", [&] { return lcl_mesh_set_property(mesh, "x", nullptr); }},
-        {"mesh", [&] { lcl_suitability out = LCL_SUITABILITY_INIT; return lcl_mesh_check_scheme(nullptr, nullptr, &out); }},
+        {"mesh",
+         [&] {
+             lcl_suitability out = LCL_SUITABILITY_INIT;
+             return lcl_mesh_check_scheme(nullptr, nullptr, &out);
+         }},
         {"suitability", [&] { return lcl_mesh_check_scheme(mesh, nullptr, nullptr); }},
         {"mesh", [&] { return lcl_mesh_refine(nullptr, nullptr, nullptr, &made); }},
         {"refined", [&] { return lcl_mesh_refine(mesh, nullptr, nullptr, nullptr); }},

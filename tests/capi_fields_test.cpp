@@ -82,8 +82,8 @@ TEST_CASE("a model far away loses nothing in float but what its own numbers lack
 TEST_CASE("wrong arguments of fields are refused", "[capi][field]") {
     const shapes::Shape shape = torus();
     const Operator A = make_operator(shape), B = make_operator(shape);
-    const FieldHandle x = make_field(A.get(), shape.mesh.positions), empty = make_field(A.get()), y = make_field(A.get(), 2), other = make_field(B.get(), shape.mesh.positions),
-                      floats = make_field(A.get(), shape.mesh.positions, LCL_PRECISION_SINGLE);
+    const FieldHandle x = make_field(A.get(), shape.mesh.positions), empty = make_field(A.get()), y = make_field(A.get(), 2),
+                      other = make_field(B.get(), shape.mesh.positions), floats = make_field(A.get(), shape.mesh.positions, LCL_PRECISION_SINGLE);
     std::vector<double> values(shape.mesh.positions.size());
     lcl_field made = nullptr;
     const auto wrong_type = static_cast<lcl_type>(2);
@@ -208,8 +208,10 @@ TEST_CASE("PIA by single sweeps is PIA", "[capi][field][solve]") {
         residuals.push_back(step(A.get(), 1, 1, 0, m, x, nullptr, y));
         if (i < sweeps) std::swap(x, y);
     }
-    for (int i = 0; i <= sweeps; ++i) CHECK(residuals[i] == Approx(history[i]).epsilon(4 * eps));  // the same kernels on the same numbers, but for the way back to model units
-    CHECK(largest_difference(download(x.get(), shape.mesh.vertex_count), P) <= (precision == LCL_PRECISION_DOUBLE ? 4 * eps : 4 * float_eps) * diagonal_of(shape));  // corners come back to the bit from a solve alone
+    for (int i = 0; i <= sweeps; ++i)
+        CHECK(residuals[i] == Approx(history[i]).epsilon(4 * eps));  // the same kernels on the same numbers, but for the way back to model units
+    CHECK(largest_difference(download(x.get(), shape.mesh.vertex_count), P) <=
+          (precision == LCL_PRECISION_DOUBLE ? 4 * eps : 4 * float_eps) * diagonal_of(shape));  // corners come back to the bit from a solve alone
 }
 
 TEST_CASE("a sweep in ranges of blocks is the whole sweep", "[capi][field]") {
@@ -238,8 +240,8 @@ TEST_CASE("a step is a x + b (M - A x) + c d, also where d is y", "[capi][field]
     const std::vector<double> m = with_channels(shape.mesh.positions, channels);
     std::vector<double> x_values = m, d_values = m;
     for (std::size_t i = 0; i < m.size(); ++i) x_values[i] += 0.3 * std::sin(7.0 * i), d_values[i] -= 0.2 * std::cos(5.0 * i);
-    const FieldHandle M = make_field(A.get(), m), x = make_field(A.get(), x_values, LCL_PRECISION_DOUBLE, M.get()), d = make_field(A.get(), d_values, LCL_PRECISION_DOUBLE, M.get()),
-                      y = make_field(A.get(), channels);
+    const FieldHandle M = make_field(A.get(), m), x = make_field(A.get(), x_values, LCL_PRECISION_DOUBLE, M.get()),
+                      d = make_field(A.get(), d_values, LCL_PRECISION_DOUBLE, M.get()), y = make_field(A.get(), channels);
     const std::vector<double> residual = sum(1, m, -1, limit_of(A.get(), x_values, channels));
     double largest = 0;
     for (std::size_t v = 0; v < residual.size() / channels; ++v)  // the isolated vertex counts for nothing
@@ -316,8 +318,9 @@ TEST_CASE("solves on fields are those of arrays", "[capi][field][solve]") {
 TEST_CASE("solves on fields refuse what does not fit together", "[capi][field][solve]") {
     const shapes::Shape shape = torus();
     const Operator A = make_operator(shape), B = make_operator(shape);
-    const FieldHandle M = make_field(A.get(), shape.mesh.positions), P = make_field(A.get()), empty = make_field(A.get()), other = make_field(B.get()), narrow = make_field(A.get(), 2),
-                      floats = make_field(A.get(), shape.mesh.positions, LCL_PRECISION_MIXED), float_P = make_field(A.get(), 3, LCL_PRECISION_MIXED);
+    const FieldHandle M = make_field(A.get(), shape.mesh.positions), P = make_field(A.get()), empty = make_field(A.get()), other = make_field(B.get()),
+                      narrow = make_field(A.get(), 2), floats = make_field(A.get(), shape.mesh.positions, LCL_PRECISION_MIXED),
+                      float_P = make_field(A.get(), 3, LCL_PRECISION_MIXED);
     lcl_solve_options options = LCL_SOLVE_OPTIONS_INIT;
     const auto solve = [&](const FieldHandle& m, const FieldHandle& p) { return lcl_interpolate_field(A.get(), m.get(), &options, p.get(), nullptr); };
     refuse(solve(M, other), LCL_ERROR_INVALID_ARGUMENT, "another operator");
@@ -352,11 +355,14 @@ TEST_CASE("ghost rows are not touched by sweeps", "[capi][field]") {
     part.owned = owned.data();
     part.owned_count = owned.size();
     const Operator A = make_operator(shape, &part);
-    const FieldHandle x = make_field(A.get(), shape.mesh.positions), y = make_field(A.get(), std::vector<double>(shape.mesh.positions.size(), 0.5), LCL_PRECISION_DOUBLE, x.get());
+    const FieldHandle x = make_field(A.get(), shape.mesh.positions),
+                      y = make_field(A.get(), std::vector<double>(shape.mesh.positions.size(), 0.5), LCL_PRECISION_DOUBLE, x.get());
     const std::vector<double> limit = limit_of(make_operator(shape).get(), shape.mesh.positions, 3);
-    const FieldHandle elsewhere = make_field(A.get(), shapes::transformed(shape, 2, 1).mesh.positions);  // ghosts in another centre and scale would change their meaning
+    const FieldHandle elsewhere =
+        make_field(A.get(), shapes::transformed(shape, 2, 1).mesh.positions);  // ghosts in another centre and scale would change their meaning
     refuse(lcl_operator_apply(A.get(), x.get(), elsewhere.get()), LCL_ERROR_INVALID_ARGUMENT, "only some rows of y are written");
-    refuse(lcl_operator_step(A.get(), 1, 1, 0, x.get(), x.get(), nullptr, elsewhere.get(), 0, -1, nullptr), LCL_ERROR_INVALID_ARGUMENT, "only some rows of y are written");
+    refuse(lcl_operator_step(A.get(), 1, 1, 0, x.get(), x.get(), nullptr, elsewhere.get(), 0, -1, nullptr), LCL_ERROR_INVALID_ARGUMENT,
+           "only some rows of y are written");
     SECTION("apply") { succeed(lcl_operator_apply(A.get(), x.get(), y.get())); }
     SECTION("step") { step(A.get(), 1, -1, 0, x, x, nullptr, y); }  // x - (x - A x)
     const std::vector<double> found = download(y.get(), shape.mesh.vertex_count);

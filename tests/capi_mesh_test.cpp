@@ -103,9 +103,7 @@ TEST_CASE("a mesh from arrays of the caller gives them back, whatever their layo
     const MeshArrays arrays(quads);
     lcl_mesh_data data = arrays.data;
     lcl_mesh raw = nullptr;
-    SECTION("a degree a face") {
-        expect_same(make_mesh(mixed).get(), mixed);
-    }
+    SECTION("a degree a face") { expect_same(make_mesh(mixed).get(), mixed); }
     SECTION("one degree for all") {
         data.face_degrees = nullptr;
         data.uniform_degree = 4;
@@ -370,7 +368,9 @@ TEST_CASE("features that make no sense are refused", "[capi][mesh][features]") {
 
 TEST_CASE("what a file carries beside its points is copied, written and read again", "[capi][mesh][io]") {
     const io_test::TemporaryFolder folder;
-    const std::string text = "mtllib a.mtl\nv 0 0 0 1 0 0\nv 1 0 0 0 1 0\nv 1 1 0 0 0 1\nv 0 1 0.125 1 1 1\nvp 1 2\nf 1 2 3\nf 1 3 4\nt crease 2/1/0 0 2 inf\nt corner 1/1/0 1 inf\nt holes 1/0/0 0\n";
+    const std::string text =
+        "mtllib a.mtl\nv 0 0 0 1 0 0\nv 1 0 0 0 1 0\nv 1 1 0 0 0 1\nv 0 1 0.125 1 1 1\nvp 1 2\nf 1 2 3\nf 1 3 4\nt crease 2/1/0 0 2 inf\nt corner 1/1/0 1 "
+        "inf\nt holes 1/0/0 0\n";
     const Mesh mesh = read_text(text, LCL_FORMAT_OBJ);
     REQUIRE(lcl_mesh_property_count(mesh.get()) == 3);
     CHECK(std::string(lcl_mesh_property_name(mesh.get(), 1)) == "green");
@@ -394,7 +394,8 @@ TEST_CASE("what a file carries beside its points is copied, written and read aga
     CHECK(points_of(mesh.get()) == before);
     succeed(lcl_mesh_set_property(copy.get(), "temperature", heat.data()));
     CHECK(lcl_mesh_property_count(mesh.get()) == 3);
-    const auto [format, name] = GENERATE(table<lcl_format, std::string>({{LCL_FORMAT_BY_ENDING, "out.obj"}, {LCL_FORMAT_PLY, "out.bin"}, {LCL_FORMAT_BY_ENDING, "out.ply.gz"}}));
+    const auto [format, name] =
+        GENERATE(table<lcl_format, std::string>({{LCL_FORMAT_BY_ENDING, "out.obj"}, {LCL_FORMAT_PLY, "out.bin"}, {LCL_FORMAT_BY_ENDING, "out.ply.gz"}}));
     INFO(name);
     succeed(lcl_mesh_write(copy.get(), folder.file(name).c_str(), format));
     succeed(lcl_mesh_read(folder.file(name).c_str(), format, &raw));
@@ -464,7 +465,8 @@ TEST_CASE("files and formats that cannot be served are refused with the right st
     refuse(lcl_mesh_read_memory("v 0 0", 5, bad_format, "x", &raw), LCL_ERROR_INVALID_ARGUMENT, "format is 6");
     refuse(lcl_mesh_write(mesh.get(), folder.file("no/such/folder.obj").c_str(), LCL_FORMAT_BY_ENDING), LCL_ERROR_WRITE, "folder.obj");
     refuse(lcl_mesh_write(mesh.get(), folder.file("x.obj").c_str(), bad_format), LCL_ERROR_INVALID_ARGUMENT, "format is 6");
-    refuse(lcl_mesh_write(mesh.get(), folder.file("x.stl").c_str(), LCL_FORMAT_BY_ENDING), LCL_ERROR_INVALID_ARGUMENT, "STL holds triangles only; face 0 has 4");
+    refuse(lcl_mesh_write(mesh.get(), folder.file("x.stl").c_str(), LCL_FORMAT_BY_ENDING), LCL_ERROR_INVALID_ARGUMENT,
+           "STL holds triangles only; face 0 has 4");
     CHECK_FALSE(std::filesystem::exists(folder.file("x.stl")));
     CHECK(raw == nullptr);
     for (const auto& [path, expected] : std::vector<std::pair<const char*, lcl_format>>{
@@ -501,7 +503,8 @@ TEST_CASE("a scheme's suitability is told without a device", "[capi][mesh][schem
     CHECK(plain.singular == 1);
     CHECK_THAT(plain.reason, Catch::Matchers::Contains("alpha 0.5"));
     CHECK(plain.vertex_count == 8);
-    const lcl_suitability cured = suitability_of(cube.get(), scheme(LCL_SCHEME_CATMULL_CLARK, 0.5)), blended = suitability_of(cube.get(), scheme(LCL_SCHEME_CATMULL_CLARK, 0, 0.3));
+    const lcl_suitability cured = suitability_of(cube.get(), scheme(LCL_SCHEME_CATMULL_CLARK, 0.5)),
+                          blended = suitability_of(cube.get(), scheme(LCL_SCHEME_CATMULL_CLARK, 0, 0.3));
     CHECK((cured.suitable == 1 && cured.singular == 0 && cured.reason[0] == '\0' && cured.vertex_count == 0));
     CHECK((blended.suitable == 1 && blended.singular == 0));
     const int32_t subset[] = {0, 1, 2};
@@ -528,7 +531,8 @@ TEST_CASE("a mesh is refined by its scheme, once unless told otherwise", "[capi]
     expect_same(refined(mesh.get(), -1).get(), shape.mesh);
     const std::vector<double> once = points_of(refined(mesh.get(), 1).get());
     for (int c = 0; c < 3; ++c) CHECK(once[3 * 6 + c] == Approx(5.0 / 9).epsilon(1e-15));  // (Q + 2 R + 0 V)/3 with Q = 1/3, R = 2/3
-    const lcl_scheme_options alpha = scheme(LCL_SCHEME_CATMULL_CLARK, 1), lambda = scheme(LCL_SCHEME_CATMULL_CLARK, 0, 0.5), doo_sabin = scheme(LCL_SCHEME_DOO_SABIN);
+    const lcl_scheme_options alpha = scheme(LCL_SCHEME_CATMULL_CLARK, 1), lambda = scheme(LCL_SCHEME_CATMULL_CLARK, 0, 0.5),
+                             doo_sabin = scheme(LCL_SCHEME_DOO_SABIN);
     CHECK(points_of(refined(mesh.get(), 1, &alpha).get())[3 * 6] == Approx(7.0 / 9).epsilon(1e-15));
     CHECK(lcl_mesh_vertex_count(refined(mesh.get(), 1, &lambda).get()) == 8 + 24 + 24);
     CHECK(lcl_mesh_vertex_count(refined(mesh.get(), 1, &doo_sabin).get()) == 24);
@@ -551,7 +555,7 @@ TEST_CASE("a refined mesh stands for the same surface, creases and corners inclu
     std::vector<double> limit(shape.mesh.positions.size()), fine_limit(3 * static_cast<std::size_t>(fine_info.vertices));
     succeed(lcl_limit_points(A.get(), shape.mesh.positions.data(), 0, 3, LCL_PRECISION_DOUBLE, limit.data(), 0));
     succeed(lcl_limit_points(B.get(), points_of(fine.get()).data(), 0, 3, LCL_PRECISION_DOUBLE, fine_limit.data(), 0));
-    fine_limit.resize(limit.size());  // old vertices keep their numbers
+    fine_limit.resize(limit.size());                        // old vertices keep their numbers
     CHECK(largest_difference(fine_limit, limit) <= 1e-14);  // coordinates up to 1, rows of up to 13 rounded weights in two steps
 }
 
@@ -572,7 +576,8 @@ TEST_CASE("colours and properties are refined as the points are, texture coordin
     for (std::size_t v = 0; v < found.size(); ++v) expected.push_back(affine(&points[3 * v]));
     CHECK(largest_difference(found, expected) <= 1e-13);  // stencils add up to 1
 
-    const Mesh textured = read_text("v 0 0 0 0 0 0\nv 1 0 0 1 0 0\nv 1 1 0 0 0 0\nv 0 1 0 0 0 0\nvt 0 0\nvt 1 0\nusemtl m\nf 1/1 2/2 3/2 4/1\n", LCL_FORMAT_OBJ);
+    const Mesh textured =
+        read_text("v 0 0 0 0 0 0\nv 1 0 0 1 0 0\nv 1 1 0 0 0 0\nv 0 1 0 0 0 0\nvt 0 0\nvt 1 0\nusemtl m\nf 1/1 2/2 3/2 4/1\n", LCL_FORMAT_OBJ);
     const Mesh plain = refined(textured.get(), 1);
     const std::vector<std::string> notes = notes_of(plain.get(), LCL_NOTE_WARNING);
     REQUIRE(notes.size() == 2);

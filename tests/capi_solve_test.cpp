@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Operators and solves through the C API: rows, limit points and control points against brute force, every status with its report, cancelling, calls beside the caller.
+// Operators and solves through the C API: rows, limit points and control points against brute force, every status with its report, cancelling, calls beside the
+// caller.
 #include <chrono>
 #include <limits>
 #include <thread>
@@ -23,7 +24,9 @@ lcl::SchemeOptions oracle_options(const lcl_scheme_options& options) {
     return out;
 }
 
-Eigen::MatrixXd oracle_rows(const shapes::Shape& shape, const lcl_scheme_options& options) { return oracle::limit_rows(shape.mesh, shape.features, oracle_options(options)); }
+Eigen::MatrixXd oracle_rows(const shapes::Shape& shape, const lcl_scheme_options& options) {
+    return oracle::limit_rows(shape.mesh, shape.features, oracle_options(options));
+}
 
 using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
@@ -212,7 +215,8 @@ TEST_CASE("limit points in each precision are as exact as it is", "[capi][operat
     const lcl_scheme_options options = scheme(LCL_SCHEME_CATMULL_CLARK);
     const Operator A = make_operator(shape, &options);
     const std::vector<double> expected = values_of(oracle_rows(shape, options) * matrix_of(shape.mesh.positions, 3));
-    const auto [precision, relative] = GENERATE(table<lcl_precision, double>({{LCL_PRECISION_SINGLE, 10 * 6e-8}, {LCL_PRECISION_MIXED, 0.0}, {LCL_PRECISION_DOUBLE, 0.0}}));
+    const auto [precision, relative] =
+        GENERATE(table<lcl_precision, double>({{LCL_PRECISION_SINGLE, 10 * 6e-8}, {LCL_PRECISION_MIXED, 0.0}, {LCL_PRECISION_DOUBLE, 0.0}}));
     std::vector<double> out(expected.size());
     succeed(lcl_limit_points(A.get(), shape.mesh.positions.data(), 0, 3, precision, out.data(), 0));
     CHECK(largest_difference(out, expected) <= relative * diagonal_of(shape) + 10 * 1e6 * 2.2e-16);  // rounding of coordinates of 1e6 stays in any case
@@ -224,7 +228,9 @@ TEST_CASE("wrong arguments of limit points and solves are refused", "[capi][oper
     const auto limit = [&](std::size_t stride, int32_t channels, int precision, std::size_t out_stride) {
         return lcl_limit_points(A.get(), M.data(), stride, channels, static_cast<lcl_precision>(precision), P.data(), out_stride);
     };
-    const auto solve = [&](std::size_t stride, int32_t channels, std::size_t P_stride) { return lcl_interpolate(A.get(), M.data(), stride, channels, nullptr, P.data(), P_stride, nullptr); };
+    const auto solve = [&](std::size_t stride, int32_t channels, std::size_t P_stride) {
+        return lcl_interpolate(A.get(), M.data(), stride, channels, nullptr, P.data(), P_stride, nullptr);
+    };
     refuse(limit(0, 0, 0, 0), LCL_ERROR_INVALID_ARGUMENT, "channels is 0");
     refuse(limit(0, -2, 0, 0), LCL_ERROR_INVALID_ARGUMENT, "channels is -2");
     refuse(limit(2, 3, 0, 0), LCL_ERROR_INVALID_ARGUMENT, "stride is 2, less than the 3 channels");
@@ -271,7 +277,8 @@ TEST_CASE("every solver that fits gives the control points of a dense solve", "[
         const Eigen::MatrixXd M = matrix_of(shape.mesh.positions, 3);
         const std::vector<double> expected = values_of(oracle::solve(rows, M));
         const double tolerance = 1e-10, diagonal = diagonal_of(shape);
-        for (const lcl_solver solver : {LCL_SOLVER_AUTO, LCL_SOLVER_PIA, LCL_SOLVER_WPIA, LCL_SOLVER_GS, LCL_SOLVER_GS_COLOURED, LCL_SOLVER_CHEBYSHEV, LCL_SOLVER_CG})
+        for (const lcl_solver solver :
+             {LCL_SOLVER_AUTO, LCL_SOLVER_PIA, LCL_SOLVER_WPIA, LCL_SOLVER_GS, LCL_SOLVER_GS_COLOURED, LCL_SOLVER_CHEBYSHEV, LCL_SOLVER_CG})
             for (const lcl_precision precision : {LCL_PRECISION_MIXED, LCL_PRECISION_DOUBLE}) {
                 CAPTURE(shape.name, options.scheme, solver, precision);
                 if (solver == LCL_SOLVER_CG && has_darts(shape)) continue;
@@ -316,14 +323,16 @@ TEST_CASE("solving undoes limit points for 1 to 9 channels, in place and with st
         std::vector<double> size(channels, 0.0);
         for (std::size_t i = 0; i < control.size(); ++i) size[i % channels] = std::max(size[i % channels], std::abs(control[i]));
         for (std::size_t i = 0; i < control.size(); ++i) {
-            const double difference = std::abs(wide[i / channels * stride + i % channels] - control[i]) / (2 * size[i % channels] + (i % channels < 3 ? diagonal_of(shape) : 0));
+            const double difference =
+                std::abs(wide[i / channels * stride + i % channels] - control[i]) / (2 * size[i % channels] + (i % channels < 3 ? diagonal_of(shape) : 0));
             if (difference > inverse_norm * 1e-9) FAIL_CHECK("vertex " << i / channels << " channel " << i % channels << " is off by " << difference);
         }
     }
 }
 
 TEST_CASE("corners, isolated vertices and vertices outside the subset keep their values to the bit", "[capi][solve]") {
-    const shapes::Shape shape = shapes::transformed(shapes::rough(shapes::with_isolated_vertex(shapes::grid_with_marked_corner(), 7), 0.1, 9), 1.0 / 3, 12345.678);
+    const shapes::Shape shape =
+        shapes::transformed(shapes::rough(shapes::with_isolated_vertex(shapes::grid_with_marked_corner(), 7), 0.1, 9), 1.0 / 3, 12345.678);
     const std::vector<double>& M = shape.mesh.positions;
     std::vector<int32_t> subset, kept{7};
     for (int32_t v = 0; v < shape.mesh.vertex_count; ++v)
@@ -613,7 +622,7 @@ TEST_CASE("the inverse's norm and the bound of the surface's error hold", "[capi
         if (shape.features.corners.empty() && contains(shape.name, "random")) {  // closed: all is one smooth block
             const double exact = oracle::infinity_norm(rows.inverse());
             CHECK(norm >= (proven ? exact * (1 - 1e-12) : 0.9 * exact));  // an estimate lies below by a few percent as a rule
-            if (!proven) CHECK(norm <= exact * 1.04);  // 1.03 times a lower bound, from solves to 1e-4
+            if (!proven) CHECK(norm <= exact * 1.04);                     // 1.03 times a lower bound, from solves to 1e-4
         }
         lcl_solve_options solve = solve_options(LCL_SOLVER_AUTO);
         solve.certify = 1;
@@ -671,7 +680,8 @@ TEST_CASE("what does not fit the device is refused with the numbers", "[capi][fi
     const uint64_t before = lcl_context_allocated_bytes(default_context()), a_channel = 90000 * sizeof(double);
     if (device.memory_bytes / a_channel > 100000) return;  // more buffers than a test should make
     lcl_field field = nullptr;
-    refuse(lcl_field_create(A.get(), static_cast<int32_t>(device.memory_bytes / a_channel) + 100, LCL_PRECISION_DOUBLE, &field), LCL_ERROR_MEMORY, std::to_string(device.memory_bytes));
+    refuse(lcl_field_create(A.get(), static_cast<int32_t>(device.memory_bytes / a_channel) + 100, LCL_PRECISION_DOUBLE, &field), LCL_ERROR_MEMORY,
+           std::to_string(device.memory_bytes));
     CHECK(field == nullptr);
     CHECK(lcl_context_allocated_bytes(default_context()) == before);
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What holds for every function of the C API: versions, statuses and sentences, options structs of older and newer callers, lives of handles, threads, contexts.
+// What holds for every function of the C API: versions, statuses and sentences, options structs of older and newer callers, lives of handles, threads,
+// contexts.
 #include <algorithm>
 #include <cstddef>
 #include <thread>
@@ -13,7 +14,8 @@ using namespace capi_test;
 namespace {
 
 /// A struct at the end of its memory, as a caller with an older, shorter header has it; what is behind its size must not change.
-template <class Struct> struct Prefix {
+template <class Struct>
+struct Prefix {
     alignas(Struct) unsigned char bytes[sizeof(Struct)];
 
     Prefix(const Struct& initial, std::size_t size) {
@@ -29,7 +31,8 @@ template <class Struct> struct Prefix {
 };
 
 /// The same struct with fields behind it that this library does not know.
-template <class Struct> struct Longer {
+template <class Struct>
+struct Longer {
     Struct known;
     unsigned char unknown[64];
 
@@ -62,9 +65,10 @@ TEST_CASE("the library's version is the header's", "[capi]") {
 TEST_CASE("every status has a name", "[capi]") {
 #define NAMED(status) std::make_pair(status, #status)
     const auto [status, name] = GENERATE(values<std::pair<int, const char*>>(
-        {NAMED(LCL_OK), NAMED(LCL_ERROR_INVALID_ARGUMENT), NAMED(LCL_ERROR_BAD_INPUT), NAMED(LCL_ERROR_UNSUPPORTED), NAMED(LCL_ERROR_FILE), NAMED(LCL_ERROR_WRITE),
-         NAMED(LCL_ERROR_NO_DEVICE), NAMED(LCL_ERROR_MEMORY), NAMED(LCL_ERROR_CANCELLED), NAMED(LCL_ERROR_INTERNAL), NAMED(LCL_ERROR_SINGULAR), NAMED(LCL_ERROR_INDEFINITE),
-         NAMED(LCL_ERROR_NOT_CONVERGED), NAMED(CL_OUT_OF_RESOURCES), NAMED(CL_INVALID_KERNEL_ARGS), NAMED(CL_DEVICE_NOT_FOUND)}));
+        {NAMED(LCL_OK), NAMED(LCL_ERROR_INVALID_ARGUMENT), NAMED(LCL_ERROR_BAD_INPUT), NAMED(LCL_ERROR_UNSUPPORTED), NAMED(LCL_ERROR_FILE),
+         NAMED(LCL_ERROR_WRITE), NAMED(LCL_ERROR_NO_DEVICE), NAMED(LCL_ERROR_MEMORY), NAMED(LCL_ERROR_CANCELLED), NAMED(LCL_ERROR_INTERNAL),
+         NAMED(LCL_ERROR_SINGULAR), NAMED(LCL_ERROR_INDEFINITE), NAMED(LCL_ERROR_NOT_CONVERGED), NAMED(CL_OUT_OF_RESOURCES), NAMED(CL_INVALID_KERNEL_ARGS),
+         NAMED(CL_DEVICE_NOT_FOUND)}));
 #undef NAMED
     CHECK(std::string(lcl_status_string(status)) == name);
     CHECK(lcl_status_string(-123456) != nullptr);
@@ -81,7 +85,8 @@ TEST_CASE("an options struct without a size is refused", "[capi]") {
     lcl_solve_options solve_options = LCL_SOLVE_OPTIONS_INIT;
     lcl_refine_options refine_options = LCL_REFINE_OPTIONS_INIT;
     lcl_features features = LCL_FEATURES_INIT;
-    data.struct_size = context_options.struct_size = scheme_options.struct_size = solve_options.struct_size = refine_options.struct_size = features.struct_size = 0;
+    data.struct_size = context_options.struct_size = scheme_options.struct_size = solve_options.struct_size = refine_options.struct_size =
+        features.struct_size = 0;
     lcl_mesh made = nullptr;
     lcl_context context = nullptr;
     lcl_operator B = nullptr;

@@ -19,32 +19,27 @@ const std::vector<std::int32_t> octahedron_faces{0, 2, 4, 2, 1, 4, 1, 3, 4, 3, 0
 const std::vector<double> cube_points{0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0, 0, 0, 1, 1, 0, 1, 1, 1, 1, 0, 1, 1};
 const std::vector<std::int32_t> cube_faces{0, 3, 2, 1, 4, 5, 6, 7, 0, 1, 5, 4, 1, 2, 6, 5, 2, 3, 7, 6, 3, 0, 4, 7};
 
-constexpr double loop_alpha_4 = 24.0 / 55.0;    // 3 / (11 - 8 (3/8 + (3/8)^2)): A of the octahedron is this times the identity
-constexpr double octahedron_inverse = 1 / 0.15; // above |A^-1|, from the lower bound of the spectrum for valence 4
+constexpr double loop_alpha_4 = 24.0 / 55.0;     // 3 / (11 - 8 (3/8 + (3/8)^2)): A of the octahedron is this times the identity
+constexpr double octahedron_inverse = 1 / 0.15;  // above |A^-1|, from the lower bound of the spectrum for valence 4
 constexpr double octahedron_diagonal = 3.4641016;
 
 Mesh octahedron() { return Mesh::from_uniform_faces(octahedron_points, 3, octahedron_faces); }
 Mesh cube() { return Mesh::from_uniform_faces(cube_points, 4, cube_faces); }
 
-double largest_difference(const std::vector<double>& a, const std::vector<double>& b)
-{
+double largest_difference(const std::vector<double>& a, const std::vector<double>& b) {
     REQUIRE(a.size() == b.size());
     double largest = 0;
-    for (std::size_t i = 0; i < a.size(); ++i)
-        largest = std::max(largest, std::abs(a[i] - b[i]));
+    for (std::size_t i = 0; i < a.size(); ++i) largest = std::max(largest, std::abs(a[i] - b[i]));
     return largest;
 }
 
-std::vector<double> scaled(std::vector<double> values, double factor)
-{
-    for (double& value : values)
-        value *= factor;
+std::vector<double> scaled(std::vector<double> values, double factor) {
+    for (double& value : values) value *= factor;
     return values;
 }
 
 template <class Action>
-lcl_status status_of(Action action)
-{
+lcl_status status_of(Action action) {
     try {
         action();
     } catch (const Error& error) {
@@ -54,10 +49,9 @@ lcl_status status_of(Action action)
     return LCL_OK;
 }
 
-} // namespace
+}  // namespace
 
-TEST_CASE("handles of the C++ API are shared by copies and empty after a move", "[cpp]")
-{
+TEST_CASE("handles of the C++ API are shared by copies and empty after a move", "[cpp]") {
     static_assert(std::is_nothrow_move_constructible<Mesh>::value, "meshes can be moved");
     Mesh mesh = octahedron();
     const Mesh shared = mesh;
@@ -71,8 +65,7 @@ TEST_CASE("handles of the C++ API are shared by copies and empty after a move", 
     CHECK(own.points() == octahedron_points);
 }
 
-TEST_CASE("a mesh from arrays gives them back", "[cpp][mesh]")
-{
+TEST_CASE("a mesh from arrays gives them back", "[cpp][mesh]") {
     const std::vector<double> points{0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0, 2, 0.5, 0};
     const std::vector<std::int32_t> degrees{4, 3}, vertices{0, 1, 2, 3, 1, 4, 2};
     Mesh mesh = Mesh::from_faces(points, degrees, vertices);
@@ -92,20 +85,17 @@ TEST_CASE("a mesh from arrays gives them back", "[cpp][mesh]")
     CHECK(info.diagonal == Approx(std::sqrt(5.0)));
     CHECK(mesh.defects().empty());
 
-    SECTION("rows may be floats and longer than a point")
-    {
+    SECTION("rows may be floats and longer than a point") {
         const std::vector<float> wide{0, 0, 0, 9, 1, 0, 0, 9, 1, 1, 0, 9};
         CHECK(Mesh::from_uniform_faces(PointView(wide.data(), 3, 4), 3, {std::vector<std::int32_t>{0, 1, 2}}).points() ==
               std::vector<double>{0, 0, 0, 1, 0, 0, 1, 1, 0});
     }
-    SECTION("points can be replaced")
-    {
+    SECTION("points can be replaced") {
         mesh.set_points(scaled(points, 2));
         CHECK(mesh.points() == scaled(points, 2));
         CHECK(status_of([&] { mesh.set_points(octahedron_points); }) == LCL_ERROR_INVALID_ARGUMENT);
     }
-    SECTION("properties can be added, replaced and read by name")
-    {
+    SECTION("properties can be added, replaced and read by name") {
         mesh.set_property("temperature", {std::vector<double>{1, 2, 3, 4, 5}});
         mesh.set_property("temperature", {std::vector<double>{5, 4, 3, 2, 1}});
         CHECK(mesh.property_names() == std::vector<std::string>{"temperature"});
@@ -114,8 +104,7 @@ TEST_CASE("a mesh from arrays gives them back", "[cpp][mesh]")
     }
 }
 
-TEST_CASE("sharp features come back resolved", "[cpp][features]")
-{
+TEST_CASE("sharp features come back resolved", "[cpp][features]") {
     Mesh mesh = cube();
     Features features;
     features.creases = {0, 1, 1, 2};
@@ -129,8 +118,7 @@ TEST_CASE("sharp features come back resolved", "[cpp][features]")
     CHECK(status_of([&] { mesh.add_features(features); }) == LCL_ERROR_INVALID_ARGUMENT);
 }
 
-TEST_CASE("sizes that do not fit are refused before the C API sees them", "[cpp]")
-{
+TEST_CASE("sizes that do not fit are refused before the C API sees them", "[cpp]") {
     CHECK(status_of([] { Mesh::from_uniform_faces(std::vector<double>(7), 3, octahedron_faces); }) == LCL_ERROR_INVALID_ARGUMENT);
     CHECK(status_of([] { Mesh::from_uniform_faces(octahedron_points, 5, octahedron_faces); }) == LCL_ERROR_INVALID_ARGUMENT);
     CHECK(status_of([] { Mesh::from_faces(octahedron_points, {std::vector<std::int32_t>{3, 3}}, octahedron_faces); }) == LCL_ERROR_INVALID_ARGUMENT);
@@ -140,8 +128,7 @@ TEST_CASE("sizes that do not fit are refused before the C API sees them", "[cpp]
     CHECK(status_of([&] { Field(A).upload(std::vector<double>(17)); }) == LCL_ERROR_INVALID_ARGUMENT);
 }
 
-TEST_CASE("an Error has the sentence, the status and the places", "[cpp][error]")
-{
+TEST_CASE("an Error has the sentence, the status and the places", "[cpp][error]") {
     const Mesh mesh = Mesh::from_uniform_faces(octahedron_points, 3, {std::vector<std::int32_t>{0, 1, 2, 0, 3, 1, 0, 1, 4}});
     try {
         mesh.validate();
@@ -155,11 +142,14 @@ TEST_CASE("an Error has the sentence, the status and the places", "[cpp][error]"
     REQUIRE_FALSE(defects.empty());
     CHECK(defects[0].count >= 1);
     CHECK(status_of([] { read_mesh("there-is-no-such-file.off"); }) == LCL_ERROR_FILE);
-    CHECK(status_of([] { ContextOptions options; options.device = "no device has this name"; Context{options}; }) == LCL_ERROR_NO_DEVICE);
+    CHECK(status_of([] {
+              ContextOptions options;
+              options.device = "no device has this name";
+              Context{options};
+          }) == LCL_ERROR_NO_DEVICE);
 }
 
-TEST_CASE("the octahedron is interpolated through arrays, a mesh, fields and a task", "[cpp][solve]")
-{
+TEST_CASE("the octahedron is interpolated through arrays, a mesh, fields and a task", "[cpp][solve]") {
     const Context context;
     const LimitOperator A(context, octahedron());
     CHECK(A.vertex_count() == 6);
@@ -171,8 +161,7 @@ TEST_CASE("the octahedron is interpolated through arrays, a mesh, fields and a t
     options.certify = true;
     const double tolerance = options.tolerance * octahedron_diagonal * octahedron_inverse;
 
-    SECTION("arrays")
-    {
+    SECTION("arrays") {
         const auto [P, report] = interpolate(A, octahedron_points, 3, options);
         CHECK(report.status == LCL_OK);
         CHECK(report.converged);
@@ -182,25 +171,22 @@ TEST_CASE("the octahedron is interpolated through arrays, a mesh, fields and a t
         CHECK(largest_difference(P, expected) <= report.surface_error_bound);
         CHECK(report.surface_error_bound <= tolerance);
         CHECK(largest_difference(P, expected) <= tolerance);
-        CHECK(largest_difference(A.limit_points(P), octahedron_points) <= 5 * 2.3 * 1.2e-7); // floats, rows of five entries up to 55/24
+        CHECK(largest_difference(A.limit_points(P), octahedron_points) <= 5 * 2.3 * 1.2e-7);  // floats, rows of five entries up to 55/24
     }
-    SECTION("a mesh")
-    {
+    SECTION("a mesh") {
         Mesh mesh = octahedron();
         interpolate(A, mesh, options).require_ok();
         CHECK(largest_difference(mesh.points(), expected) <= tolerance);
     }
-    SECTION("fields")
-    {
-        options.tolerance = 1e-5; // fields of floats
+    SECTION("fields") {
+        options.tolerance = 1e-5;  // fields of floats
         Field M(A), P(A);
         M.upload(octahedron_points);
         interpolate(A, M, P, options).require_ok();
         CHECK(largest_difference(P.download(), expected) <= 2e-5 * octahedron_diagonal * octahedron_inverse);
         CHECK(largest_difference(P.read_vertices({std::vector<std::int32_t>{4}}), {0, 0, 1 / loop_alpha_4}) <= 2e-5 * octahedron_diagonal * octahedron_inverse);
     }
-    SECTION("a task")
-    {
+    SECTION("a task") {
         std::vector<double> P(18);
         SolveTask first(A, octahedron_points, 3, P.data(), options);
         SolveTask task = std::move(first);
@@ -208,8 +194,7 @@ TEST_CASE("the octahedron is interpolated through arrays, a mesh, fields and a t
         CHECK(task.is_done());
         CHECK(largest_difference(P, expected) <= tolerance);
     }
-    SECTION("a warm start from the answer takes no iteration")
-    {
+    SECTION("a warm start from the answer takes no iteration") {
         std::vector<double> P = expected;
         options.warm_start = true;
         CHECK(interpolate(A, octahedron_points, 3, P.data(), options).iterations == 0);
@@ -217,8 +202,7 @@ TEST_CASE("the octahedron is interpolated through arrays, a mesh, fields and a t
     }
 }
 
-TEST_CASE("apply and step are the limit operator and a PIA sweep", "[cpp][field]")
-{
+TEST_CASE("apply and step are the limit operator and a PIA sweep", "[cpp][field]") {
     const Context context;
     const LimitOperator A(context, octahedron());
     Field M(A), P(A), y(A);
@@ -240,11 +224,10 @@ TEST_CASE("apply and step are the limit operator and a PIA sweep", "[cpp][field]
     CHECK(row[4].second == Approx((1 - loop_alpha_4) / 4).epsilon(1e-14));
     CHECK(A.block_count() >= 1);
     const InverseNorm inverse = A.inverse_norm();
-    CHECK(inverse.norm >= 1 / loop_alpha_4 * (1 - 1e-6)); // the octahedron itself is amplified by 55/24
+    CHECK(inverse.norm >= 1 / loop_alpha_4 * (1 - 1e-6));  // the octahedron itself is amplified by 55/24
 }
 
-TEST_CASE("singular is a result that can be made an exception", "[cpp][solve]")
-{
+TEST_CASE("singular is a result that can be made an exception", "[cpp][solve]") {
     const Context context;
     const LimitOperator A(context, cube());
     CHECK(A.diagnose().singular);
@@ -261,39 +244,39 @@ TEST_CASE("singular is a result that can be made an exception", "[cpp][solve]")
     CHECK(interpolate(cured, cube_points).report.converged);
 }
 
-TEST_CASE("a progress callback may cancel, and what it throws arrives", "[cpp][solve]")
-{
+TEST_CASE("a progress callback may cancel, and what it throws arrives", "[cpp][solve]") {
     const LimitOperator A(Context(), octahedron());
     SolveOptions options;
     options.solver = Solver::pia;
     std::vector<int> iterations;
-    options.progress = [&](int iteration, double, double) { iterations.push_back(iteration); return iteration < 2; };
+    options.progress = [&](int iteration, double, double) {
+        iterations.push_back(iteration);
+        return iteration < 2;
+    };
     CHECK(status_of([&] { (void)interpolate(A, octahedron_points, 3, options); }) == LCL_ERROR_CANCELLED);
     CHECK(iterations.back() == 2);
     options.progress = [](int, double, double) -> bool { throw std::length_error("from the callback"); };
     CHECK_THROWS_AS((void)interpolate(A, octahedron_points, 3, options), std::length_error);
 }
 
-TEST_CASE("log messages reach a function of the caller", "[cpp][device]")
-{
+TEST_CASE("log messages reach a function of the caller", "[cpp][device]") {
     std::vector<std::string> messages;
     ContextOptions options;
     options.log = [&](LogLevel, const std::string& message) { messages.push_back(message); };
     options.log_level = LogLevel::debug;
-    const LimitOperator A(Context(options), octahedron()); // the context lives on in the operator, and so must the function
+    const LimitOperator A(Context(options), octahedron());  // the context lives on in the operator, and so must the function
     interpolate(A, octahedron_points).report.require_ok();
     CHECK_FALSE(messages.empty());
     CHECK(devices().size() >= 1);
     CHECK_FALSE(A.context().device().name.empty());
 }
 
-TEST_CASE("refined vertices keep their numbers and know their places", "[cpp][refine]")
-{
+TEST_CASE("refined vertices keep their numbers and know their places", "[cpp][refine]") {
     const Mesh refined = refine(cube(), 1);
     CHECK(refined.vertex_count() == 26);
     CHECK(refined.face_count() == 24);
     const std::vector<double> points = refined.points();
-    CHECK(std::abs(points[0] - 2.0 / 9) <= 1e-15); // (Q + 2R + 0 S)/3 at valence 3: Q = (1/2 + 1/2 + 0)/3, R = (1/2)/3 in each coordinate
+    CHECK(std::abs(points[0] - 2.0 / 9) <= 1e-15);  // (Q + 2R + 0 S)/3 at valence 3: Q = (1/2 + 1/2 + 0)/3, R = (1/2)/3 in each coordinate
     const Locations places = locations(refined);
     CHECK(places.faces.size() == 26);
     CHECK(places.uv.size() == 52);
@@ -301,8 +284,7 @@ TEST_CASE("refined vertices keep their numbers and know their places", "[cpp][re
     CHECK(status_of([] { refine(cube(), -1); }) == LCL_ERROR_INVALID_ARGUMENT);
 }
 
-TEST_CASE("a mesh goes through a file and through memory", "[cpp][io]")
-{
+TEST_CASE("a mesh goes through a file and through memory", "[cpp][io]") {
     const std::string path = "cpp_api_test.off";
     write_mesh(octahedron(), path);
     CHECK(read_mesh(path).points() == octahedron_points);

@@ -84,8 +84,9 @@ TEST_CASE("an edge with three faces names its ends and its faces", "[mesh][defec
     CHECK(defect.count == 1);
     CHECK(defect.where.vertices == Indices{0, 1});
     CHECK(defect.where.faces == Indices{0, 1, 2});
-    CHECK(defect.message == "edge 0-1 belongs to 3 faces (0, 1, 2), a manifold mesh has at most two at an edge: "
-                            "remove faces or give them their own copies of the edge's vertices");
+    CHECK(defect.message ==
+          "edge 0-1 belongs to 3 faces (0, 1, 2), a manifold mesh has at most two at an edge: "
+          "remove faces or give them their own copies of the edge's vertices");
 }
 
 TEST_CASE("fans that share a vertex alone are a non-manifold vertex, open or closed", "[mesh][defects]") {
@@ -93,7 +94,8 @@ TEST_CASE("fans that share a vertex alone are a non-manifold vertex, open or clo
     CHECK(open.kind == DefectKind::non_manifold_vertex);
     CHECK(open.where.vertices == Indices{2});
     CHECK(open.where.faces == Indices{0, 1});
-    CHECK(open.message == "vertex 2 joins 2 fans of faces that share no edge there, with faces 0 and 1 in different ones: give each fan its own copy of the vertex");
+    CHECK(open.message ==
+          "vertex 2 joins 2 fans of faces that share no edge there, with faces 0 and 1 in different ones: give each fan its own copy of the vertex");
     const Defect closed = only_defect(shapes::closed_bow_tie());
     CHECK(closed.kind == DefectKind::non_manifold_vertex);
     CHECK(closed.where.vertices == Indices{0});
@@ -145,13 +147,15 @@ TEST_CASE("faces without area are listed but accepted, at any scale", "[mesh][de
 }
 
 TEST_CASE("all defects of a mesh are found at once, those that refuse it first", "[mesh][defects]") {
-    // face 0 index, 1 repeated, 2 short, 3..5 on edge 0-1, 6 and 7 run alike along 5-6, 8 touches 5 .. 7 at vertex 7 alone, 9 without area, vertex 11 not finite
+    // face 0 index, 1 repeated, 2 short, 3..5 on edge 0-1, 6 and 7 run alike along 5-6, 8 touches 5 .. 7 at vertex 7 alone, 9 without area, vertex 11 not
+    // finite
     std::vector<shapes::Point> points;
     for (int i = 0; i < 14; ++i) points.push_back({double(i), double(i * i), double(i * i * i)});
     points[11][2] = std::numeric_limits<double>::quiet_NaN();
     points[13] = points[12];
-    const auto mesh = shapes::make("everything", points,
-                                   {{0, 1, 99}, {2, 3, 2}, {4, 5}, {0, 1, 2}, {1, 0, 3}, {0, 1, 4}, {5, 6, 7}, {5, 6, 8}, {7, 9, 10}, {12, 13, 10}}).mesh;
+    const auto mesh =
+        shapes::make("everything", points, {{0, 1, 99}, {2, 3, 2}, {4, 5}, {0, 1, 2}, {1, 0, 3}, {0, 1, 4}, {5, 6, 7}, {5, 6, 8}, {7, 9, 10}, {12, 13, 10}})
+            .mesh;
     CHECK(kinds(mesh) == std::vector<std::string>{"index-range", "repeated-vertex", "short-face", "edge-with-three-faces", "non-manifold-vertex", "orientation",
                                                   "not-finite", "zero-area"});
     for (const Defect& defect : find_defects(mesh)) {

@@ -108,8 +108,9 @@ TEST_CASE("PLY elements and properties come in any order, and unknown ones are s
 }
 
 TEST_CASE("a PLY row with more values than its header announces is refused", "[io][ply]") {
-    const std::string text = ascii_header("element vertex 3\nproperty float x\nproperty float y\nproperty float z\nelement face 1\nproperty list uchar int vertex_indices\n") +
-                             "0 0 0\n1 0 0\n0 1 0 7\n3 0 1 2\n";
+    const std::string text =
+        ascii_header("element vertex 3\nproperty float x\nproperty float y\nproperty float z\nelement face 1\nproperty list uchar int vertex_indices\n") +
+        "0 0 0\n1 0 0\n0 1 0 7\n3 0 1 2\n";
     CHECK_THROWS_WITH(read_ply_text(text), Catch::Contains(":12: the row has more values than the header announces"));
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Every kernel of the operator against plain double loops over the plan's rows. Tolerances follow from the rounding of one row: a row of k entries whose weights sum to 1, times values below
-// 1, is off by at most (k + 4) u (products, sums, the weights' own rounding), u = 2^-24 for float, 2^-53 for double, 2^-46 for pairs of floats.
+// Every kernel of the operator against plain double loops over the plan's rows. Tolerances follow from the rounding of one row: a row of k entries whose
+// weights sum to 1, times values below 1, is off by at most (k + 4) u (products, sums, the weights' own rounding), u = 2^-24 for float, 2^-53 for double, 2^-46
+// for pairs of floats.
 #include <cmath>
 #include <functional>
 
@@ -226,7 +227,8 @@ private:
         for (Index row = 0; row < plan_->row_count; ++row)
             for (int c = 0; c < channels_; ++c) {
                 long double sum = 0;
-                for (std::size_t k = 0; k < entries_[row].columns.size(); ++k) sum += static_cast<long double>(entries_[row].weights[k]) * x[at(entries_[row].columns[k], c)];
+                for (std::size_t k = 0; k < entries_[row].columns.size(); ++k)
+                    sum += static_cast<long double>(entries_[row].weights[k]) * x[at(entries_[row].columns[k], c)];
                 y[at(row, c)] = static_cast<double>(sum);
             }
         return y;
@@ -327,11 +329,13 @@ std::vector<Case> small_cases() {
     return cases;
 }
 
-std::vector<Real> reals() { return device_context()->device().has_double ? std::vector<Real>{Real::single, Real::wide, Real::full} : std::vector<Real>{Real::single, Real::wide}; }
+std::vector<Real> reals() {
+    return device_context()->device().has_double ? std::vector<Real>{Real::single, Real::wide, Real::full} : std::vector<Real>{Real::single, Real::wide};
+}
 
 void check(const std::shared_ptr<Context>& context, const Case& c, const Launching& launching, int channels, Real real) {
-    INFO(c.name << ", " << channels << " channels, type " << static_cast<int>(real) << ", group " << launching.group << ", blocks of " << launching.block_rows << " rows"
-                << (context->device().has_double ? "" : ", no double"));
+    INFO(c.name << ", " << channels << " channels, type " << static_cast<int>(real) << ", group " << launching.group << ", blocks of " << launching.block_rows
+                << " rows" << (context->device().has_double ? "" : ", no double"));
     KernelCheck(context, c, launching, channels, real).check_all();
 }
 
@@ -366,7 +370,8 @@ TEST_CASE("pairs of floats stand in where there is no double", "[kernel][pair]")
 }
 
 TEST_CASE("kernels equal plain loops on 100 000 rows", "[kernel]") {
-    const Case quads{"100172 quads", shapes::torus_quads(317, 316), catmull_clark(), {}, {}}, triangles{"99847 triangles", shapes::shuffled(shapes::torus_triangles(313, 319), 1), loop(), {}, {}};
+    const Case quads{"100172 quads", shapes::torus_quads(317, 316), catmull_clark(), {}, {}},
+        triangles{"99847 triangles", shapes::shuffled(shapes::torus_triangles(313, 319), 1), loop(), {}, {}};
     for (const Case& c : {quads, triangles}) {
         check(device_context(), c, {1, 8192}, 3, Real::single);
         check(device_context(), c, {16, 1024}, 3, Real::single);

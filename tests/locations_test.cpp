@@ -40,7 +40,9 @@ struct Ring {
         shape = shapes::make("ring", points, faces);
     }
     int columns() const { return closed ? n : n + 1; }
-    int index(int i, int j) const { return (i + m) % m * columns() + (closed ? (j + n) % n : std::min(std::max(j, 0), n)); }  // open: the ghost row equals the boundary row
+    int index(int i, int j) const {
+        return (i + m) % m * columns() + (closed ? (j + n) % n : std::min(std::max(j, 0), n));
+    }  // open: the ghost row equals the boundary row
     Vector at(int i, int j) const { return oracle::positions(shape.mesh).row(index(i, j)); }
 };
 

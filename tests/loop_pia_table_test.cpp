@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The table of the Loop PIA paper in kind: E_10/E_0 and the spectral radius of the iteration matrix for PIA, W-PIA with the best weight, and GS-PIA in natural order, on triangle meshes of
-// about 0.5k, 1.6k and 8.6k vertices, and the same for the schemes that the paper leaves to the future. The device's figures have to be the plain loops'.
+// The table of the Loop PIA paper in kind: E_10/E_0 and the spectral radius of the iteration matrix for PIA, W-PIA with the best weight, and GS-PIA in natural
+// order, on triangle meshes of about 0.5k, 1.6k and 8.6k vertices, and the same for the schemes that the paper leaves to the future. The device's figures have
+// to be the plain loops'.
 #include <cmath>
 #include <cstdio>
 #include <map>
@@ -21,7 +22,8 @@ struct Figures {
 };
 
 /// Factor by which x <- G x grows in the long run: the mean over the last `span` of many steps, in the norm of D.
-template <class Step> double growth(const Eigen::VectorXd& d, const Step& step, int steps = 5000, int span = 500) {
+template <class Step>
+double growth(const Eigen::VectorXd& d, const Step& step, int steps = 5000, int span = 500) {
     Eigen::VectorXd x = rough_values(d.size(), 1, 17);
     double logarithm = 0;
     for (int k = 0; k < steps; ++k) {
@@ -48,7 +50,9 @@ Eigen::VectorXd gauss_seidel_step(const oracle::SparseMatrix& a, Eigen::VectorXd
 
 class Table {
 public:
-    explicit Table(const char* title) { std::printf("\n%s\n%-34s %6s | %-28s | %-26s\n", title, "mesh", "V", "radius: PIA, W-PIA, GS", "E_10/E_0: PIA, W-PIA, GS"); }
+    explicit Table(const char* title) {
+        std::printf("\n%s\n%-34s %6s | %-28s | %-26s\n", title, "mesh", "V", "radius: PIA, W-PIA, GS", "E_10/E_0: PIA, W-PIA, GS");
+    }
 
     /// Measures one mesh, checks device against plain loops, and prints the line.
     Figures add(const shapes::Shape& shape, const SchemeOptions& scheme) {
@@ -62,13 +66,14 @@ public:
         const double weight = 2 / (2 - radius.pia);
         check_radii(radius);
         const Eigen::MatrixXd m = oracle::positions(shape.mesh);
-        const Figures gain{ratio(*system, m, Solver::pia, 0, oracle::pia(a, m, sweeps)), ratio(*system, m, Solver::wpia, weight, oracle::pia(a, m, sweeps, weight)),
+        const Figures gain{ratio(*system, m, Solver::pia, 0, oracle::pia(a, m, sweeps)),
+                           ratio(*system, m, Solver::wpia, weight, oracle::pia(a, m, sweeps, weight)),
                            ratio(*system, m, Solver::gauss_seidel, 0, oracle::gauss_seidel(a, m, sweeps))};
         CHECK(gain.gauss_seidel < gain.wpia);
         CHECK(gain.wpia < gain.pia);
         CHECK(2 / (1 + spectrum_of(*system).estimate) == Approx(weight).epsilon(0.02));  // the weight that wpia takes by itself
-        std::printf("%-34s %6d | %8.4f %8.4f %8.4f   | %8.2e %8.2e %8.2e\n", shape.name.c_str(), static_cast<int>(mesh.vertex_count()), radius.pia, radius.wpia, radius.gauss_seidel, gain.pia, gain.wpia,
-                    gain.gauss_seidel);
+        std::printf("%-34s %6d | %8.4f %8.4f %8.4f   | %8.2e %8.2e %8.2e\n", shape.name.c_str(), static_cast<int>(mesh.vertex_count()), radius.pia, radius.wpia,
+                    radius.gauss_seidel, gain.pia, gain.wpia, gain.gauss_seidel);
         return radius;
     }
 
@@ -82,7 +87,9 @@ private:
             return {1 - values[0], rest, oracle::spectral_radius(oracle::gauss_seidel_iteration(dense))};
         }
         const double pia = growth(d, [&](const Eigen::VectorXd& x) { return Eigen::VectorXd(x - a * x); }), weight = 2 / (2 - pia);
-        return {pia, growth(d, [&](const Eigen::VectorXd& x) { return Eigen::VectorXd(x - weight * (a * x)); }), growth(d, [&](const Eigen::VectorXd& x) { return gauss_seidel_step(a, x); }, 400, 100)};
+        return {pia, growth(d, [&](const Eigen::VectorXd& x) { return Eigen::VectorXd(x - weight * (a * x)); }),
+                growth(
+                    d, [&](const Eigen::VectorXd& x) { return gauss_seidel_step(a, x); }, 400, 100)};
     }
 
     static void check_radii(const Figures& radius) {
@@ -103,7 +110,8 @@ private:
             const SolveReport report = solve(system, m, options).report;
             REQUIRE(report.residuals.size() == sweeps + 1);
             found = report.residuals[sweeps] / report.residuals[0];
-            CHECK(found == (precision == Precision::full ? Approx(expected).epsilon(1e-8).margin(1e-14) : Approx(expected).epsilon(1e-4).margin(1e-7)));  // float stages begin at 1e-4 of E_0
+            CHECK(found == (precision == Precision::full ? Approx(expected).epsilon(1e-8).margin(1e-14)
+                                                         : Approx(expected).epsilon(1e-4).margin(1e-7)));  // float stages begin at 1e-4 of E_0
         }
         return found;
     }
@@ -149,8 +157,9 @@ TEST_CASE("Loop: the device's table is the plain loops', and of the paper's kind
 }
 
 TEST_CASE("Catmull-Clark and two-phase: the same table", "[table][catmull-clark]") {
-    for (const auto& scheme : {NamedScheme{"Catmull-Clark, alpha 0, on quads", catmull_clark()}, NamedScheme{"Catmull-Clark, alpha 0.5, on quads", catmull_clark(0.5)},
-                               NamedScheme{"two-phase, lambda 1/3, on quads", catmull_clark(0, 1.0 / 3)}}) {
+    for (const auto& scheme :
+         {NamedScheme{"Catmull-Clark, alpha 0, on quads", catmull_clark()}, NamedScheme{"Catmull-Clark, alpha 0.5, on quads", catmull_clark(0.5)},
+          NamedScheme{"two-phase, lambda 1/3, on quads", catmull_clark(0, 1.0 / 3)}}) {
         Table table(scheme.name.c_str());
         for (const int vertices : {84, 270, 1440}) table.add(noisy(quads_of(shapes::random_triangle_mesh(vertices, 12)), 5), scheme.options);
     }

@@ -50,7 +50,8 @@ struct Caller {
 };
 
 /// A cl_mem that the caller owns.
-template <class Number> struct Memory {
+template <class Number>
+struct Memory {
     cl_mem memory = nullptr;
     cl_command_queue queue;
     std::size_t count;
@@ -95,7 +96,8 @@ struct OwnedEvent {
 shapes::Shape torus() { return shapes::rough(shapes::torus_quads(9, 7), 0.05, 2); }
 
 /// n x channels values as rows of `stride` numbers behind `offset` ones, with `gap` between.
-template <class Number> std::vector<Number> spread(const std::vector<double>& values, int channels, std::size_t offset, std::size_t stride, Number gap) {
+template <class Number>
+std::vector<Number> spread(const std::vector<double>& values, int channels, std::size_t offset, std::size_t stride, Number gap) {
     std::vector<Number> out(offset + values.size() / channels * stride + 3, gap);
     for (std::size_t i = 0; i < values.size(); ++i) out[offset + i / channels * stride + i % channels] = static_cast<Number>(values[i]);
     return out;
@@ -107,13 +109,16 @@ bool has_double() {
     return info.has_double != 0;
 }
 
-template <class Number> constexpr lcl_type type_of = std::is_same<Number, float>::value ? LCL_TYPE_FLOAT : LCL_TYPE_DOUBLE;
+template <class Number>
+constexpr lcl_type type_of = std::is_same<Number, float>::value ? LCL_TYPE_FLOAT : LCL_TYPE_DOUBLE;
 
 /// Imports spread rows, exports them to another place, and compares both ways with the values.
-template <class Number> void check_round_trip(const Caller& caller, lcl_operator A, const std::vector<double>& values, int channels, lcl_precision precision) {
+template <class Number>
+void check_round_trip(const Caller& caller, lcl_operator A, const std::vector<double>& values, int channels, lcl_precision precision) {
     CAPTURE(channels, precision, sizeof(Number));
     const std::size_t stride = channels + 2, offset = 5, out_stride = channels + 1, out_offset = 2;
-    const Memory<Number> from(caller, spread<Number>(values, channels, offset, stride, Number(99))), to(caller, spread<Number>(values, channels, out_offset, out_stride, Number(-1)));
+    const Memory<Number> from(caller, spread<Number>(values, channels, offset, stride, Number(99))),
+        to(caller, spread<Number>(values, channels, out_offset, out_stride, Number(-1)));
     const std::vector<Number> zeros(to.count, Number(-1));
     ok(clEnqueueWriteBuffer(caller.second_queue, to.memory, CL_TRUE, 0, zeros.size() * sizeof(Number), zeros.data(), 0, nullptr, nullptr));
     const FieldHandle field = make_field(A, channels, precision);
@@ -307,9 +312,11 @@ TEST_CASE("buffers that do not fit are refused before anything is put on the que
     both(field.get(), foreign.memory, 0, LCL_TYPE_FLOAT, 0, "context");
     refuse(lcl_field_export_cl(empty.get(), memory.memory, 0, LCL_TYPE_FLOAT, 0, 0, nullptr, nullptr), LCL_ERROR_INVALID_ARGUMENT, "holds no values yet");
     refuse(lcl_field_import_cl(field.get(), memory.memory, 0, LCL_TYPE_FLOAT, 0, 1, nullptr, nullptr), LCL_ERROR_INVALID_ARGUMENT, "events is NULL");
-    const lcl_status too_large = lcl_field_import_cl(field.get(), memory.memory, std::numeric_limits<std::size_t>::max() - 3, LCL_TYPE_FLOAT, 0, 0, nullptr, nullptr);
+    const lcl_status too_large =
+        lcl_field_import_cl(field.get(), memory.memory, std::numeric_limits<std::size_t>::max() - 3, LCL_TYPE_FLOAT, 0, 0, nullptr, nullptr);
     refuse(too_large, LCL_ERROR_INVALID_ARGUMENT, "do not fit into the buffer's");
-    refuse(lcl_field_import_cl(field.get(), memory.memory, 0, LCL_TYPE_FLOAT, std::numeric_limits<std::size_t>::max() / 8, 0, nullptr, nullptr), LCL_ERROR_INVALID_ARGUMENT, "do not fit into the buffer's");
+    refuse(lcl_field_import_cl(field.get(), memory.memory, 0, LCL_TYPE_FLOAT, std::numeric_limits<std::size_t>::max() / 8, 0, nullptr, nullptr),
+           LCL_ERROR_INVALID_ARGUMENT, "do not fit into the buffer's");
     if (has_double()) both(field.get(), memory.memory, 0, LCL_TYPE_DOUBLE, 0, "do not fit into the buffer's");
     else CHECK(lcl_field_import_cl(field.get(), memory.memory, 0, LCL_TYPE_DOUBLE, 0, 0, nullptr, nullptr) == LCL_ERROR_UNSUPPORTED);
     CHECK(memory.read() == zeros);

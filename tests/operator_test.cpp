@@ -171,7 +171,8 @@ TEST_CASE("the scaled operator is symmetric between smooth vertices", "[operator
             double worst = 0;
             for (Index i = 0; i < mesh.vertex_count(); ++i)
                 for (Index j = 0; j < i; ++j)
-                    if (mesh.features.kind[i] == VertexKind::smooth && mesh.features.kind[j] == VertexKind::smooth) worst = std::max(worst, std::abs(s(i, j) - s(j, i)));
+                    if (mesh.features.kind[i] == VertexKind::smooth && mesh.features.kind[j] == VertexKind::smooth)
+                        worst = std::max(worst, std::abs(s(i, j) - s(j, i)));
             CHECK(worst < 1e-14 * (1 + largest(s)));
         }
     }

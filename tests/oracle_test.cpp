@@ -445,7 +445,7 @@ TEST_CASE("Doo-Sabin refinement keeps the boundary curve and opens creases", "[o
 
     const auto torus = shapes::torus_with_dart();
     const auto cut = oracle::subdivide(oracle::make_surface(torus.mesh, torus.features), doo_sabin());
-    CHECK(cut.surface.vertex_count == 4 * 30 + 3 * 4);      // two points on each side of three crease edges
+    CHECK(cut.surface.vertex_count == 4 * 30 + 3 * 4);        // two points on each side of three crease edges
     CHECK(cut.surface.faces.size() == 30 + 60 + 3 + 30 + 2);  // crease edges make two faces, the two inner crease vertices too
     CHECK(cut.surface.sharp.size() == 6 + 4 + 2);             // per side: three edges and two inner vertices; each dart one
 }

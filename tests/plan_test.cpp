@@ -96,7 +96,8 @@ TEST_CASE("a plan's rows equal brute-force subdivision on every shape, with ever
             const Plan plan = mesh.plan(scheme.options, options);
             const Eigen::MatrixXd a = matrix_of(plan);
             CHECK(largest(a - oracle::limit_rows(shape.mesh, shape.features, scheme.options)) < tolerance);
-            for (Index row = 0; row < plan.row_count; ++row) CHECK(plan.diagonal[row] == Approx(a(plan.vertex_of_row[row], plan.vertex_of_row[row])).margin(1e-15));
+            for (Index row = 0; row < plan.row_count; ++row)
+                CHECK(plan.diagonal[row] == Approx(a(plan.vertex_of_row[row], plan.vertex_of_row[row])).margin(1e-15));
         }
     }
 }
@@ -142,7 +143,8 @@ TEST_CASE("the scaling makes the smooth part symmetric and is zero elsewhere", "
             Eigen::MatrixXd s = Eigen::MatrixXd::Zero(plan.smooth.row_count, plan.smooth.row_count);
             for (Index i = 0; i < plan.smooth.row_count; ++i)
                 for (Index j = 0; j < plan.smooth.row_count; ++j)
-                    s(i, j) = plan.scaling[plan.smooth.first_row + i] * a(plan.vertex_of_row[plan.smooth.first_row + i], plan.vertex_of_row[plan.smooth.first_row + j]);
+                    s(i, j) = plan.scaling[plan.smooth.first_row + i] *
+                              a(plan.vertex_of_row[plan.smooth.first_row + i], plan.vertex_of_row[plan.smooth.first_row + j]);
             CHECK(largest(s - s.transpose()) < 1e-14 * (1 + largest(s)));
             for (Index row = 0; row < plan.row_count; ++row) CHECK((plan.scaling[row] > 0) == (row >= plan.smooth.first_row));
         }
@@ -223,7 +225,8 @@ TEST_CASE("the host operator applies the plan's rows, whatever the channels and 
             const Eigen::MatrixXd x = rough_values(plan.vertex_count, channels, 1), m = rough_values(plan.vertex_count, channels, 2), ax = matrix_of(plan) * x;
             std::vector<double> in(x.size()), right(x.size());
             for (Index row = 0; row < plan.vertex_count; ++row)
-                for (int c = 0; c < channels; ++c) in[row * channels + c] = x(plan.vertex_of_row[row], c), right[row * channels + c] = m(plan.vertex_of_row[row], c);
+                for (int c = 0; c < channels; ++c)
+                    in[row * channels + c] = x(plan.vertex_of_row[row], c), right[row * channels + c] = m(plan.vertex_of_row[row], c);
             const std::vector<double> out = host_apply(plan, in, channels);
             double worst = 0, position = 0, others = 0;
             for (Index row = 0; row < plan.vertex_count; ++row) {

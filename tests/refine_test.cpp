@@ -122,8 +122,8 @@ TEST_CASE("a cube refined by Catmull-Clark has the points worked out by hand", "
 TEST_CASE("Catmull-Clark numbers vertices, edges, faces, and children begin at their old vertex", "[refine][catmull-clark]") {
     const Refinement refined = refine_once_with(two_quads(), catmull_clark(0));
     // edges 6: 0-1, 7: 1-4, 8: 4-3, 9: 3-0, 10: 1-2, 11: 2-5, 12: 5-4; faces 13, 14
-    CHECK(shapes::faces_of(refined.mesh) == std::vector<Face>{{0, 6, 13, 9}, {1, 7, 13, 6}, {4, 8, 13, 7}, {3, 9, 13, 8},
-                                                             {1, 10, 14, 7}, {2, 11, 14, 10}, {5, 12, 14, 11}, {4, 7, 14, 12}});
+    CHECK(shapes::faces_of(refined.mesh) ==
+          std::vector<Face>{{0, 6, 13, 9}, {1, 7, 13, 6}, {4, 8, 13, 7}, {3, 9, 13, 8}, {1, 10, 14, 7}, {2, 11, 14, 10}, {5, 12, 14, 11}, {4, 7, 14, 12}});
     CHECK(refined.face_parent == std::vector<Index>{0, 0, 0, 0, 1, 1, 1, 1});
     check_point(point(refined.mesh, 0), {0, 0, 0});
     check_point(point(refined.mesh, 1), {1, 0, 0});
@@ -151,8 +151,22 @@ TEST_CASE("a tetrahedron refined by Loop has the points and faces worked out by 
     check_point(point(refined.mesh, 0), {0.25, 0.25, 0.25});  // beta_3 = 3/16: 7/16 V - 3/16 V
     check_point(point(refined.mesh, 4), {0, 0.5, 0});         // edge 0-2: (3/8 - 1/8)(V_0 + V_2)
     // edges 4: 0-2, 5: 2-1, 6: 1-0, 7: 1-3, 8: 3-0, 9: 3-2
-    CHECK(shapes::faces_of(refined.mesh) == std::vector<Face>{{0, 4, 6}, {2, 5, 4}, {1, 6, 5}, {4, 5, 6}, {0, 6, 8}, {1, 7, 6}, {3, 8, 7}, {6, 7, 8},
-                                                             {0, 8, 4}, {3, 9, 8}, {2, 4, 9}, {8, 9, 4}, {1, 5, 7}, {2, 9, 5}, {3, 7, 9}, {5, 9, 7}});
+    CHECK(shapes::faces_of(refined.mesh) == std::vector<Face>{{0, 4, 6},
+                                                              {2, 5, 4},
+                                                              {1, 6, 5},
+                                                              {4, 5, 6},
+                                                              {0, 6, 8},
+                                                              {1, 7, 6},
+                                                              {3, 8, 7},
+                                                              {6, 7, 8},
+                                                              {0, 8, 4},
+                                                              {3, 9, 8},
+                                                              {2, 4, 9},
+                                                              {8, 9, 4},
+                                                              {1, 5, 7},
+                                                              {2, 9, 5},
+                                                              {3, 7, 9},
+                                                              {5, 9, 7}});
     CHECK(refined.face_parent == std::vector<Index>{0, 0, 0, 0, 1, 1, 1, 1, 2, 2, 2, 2, 3, 3, 3, 3});
 }
 
@@ -163,13 +177,13 @@ TEST_CASE("a quad refined by Doo-Sabin has the points, faces and kept corners wo
         REQUIRE(refined.mesh.vertex_count == 4 + 8 + 4);
         check_point(point(refined.mesh, 0), {4, 4, 0}, 1e-14);
         check_point(point(refined.mesh, 2), {12, 12, 0}, 1e-14);
-        check_point(point(refined.mesh, 4), {4, 0, 0});   // 3/4 and 1/4 on edge 0-1
+        check_point(point(refined.mesh, 4), {4, 0, 0});  // 3/4 and 1/4 on edge 0-1
         check_point(point(refined.mesh, 5), {12, 0, 0});
         check_point(point(refined.mesh, 11), {0, 4, 0});  // the last point of edge 3-0
         check_point(point(refined.mesh, 13), {16, 0, 0});
-        CHECK(shapes::faces_of(refined.mesh) == std::vector<Face>{{0, 1, 2, 3},
-                                                                 {0, 4, 5, 1}, {1, 6, 7, 2}, {2, 8, 9, 3}, {3, 10, 11, 0},
-                                                                 {0, 11, 12, 4}, {1, 5, 13, 6}, {2, 7, 14, 8}, {3, 9, 15, 10}});
+        CHECK(shapes::faces_of(refined.mesh) ==
+              std::vector<Face>{
+                  {0, 1, 2, 3}, {0, 4, 5, 1}, {1, 6, 7, 2}, {2, 8, 9, 3}, {3, 10, 11, 0}, {0, 11, 12, 4}, {1, 5, 13, 6}, {2, 7, 14, 8}, {3, 9, 15, 10}});
         CHECK(refined.face_parent == std::vector<Index>{0, -1, -1, -1, -1, -1, -1, -1, -1});
         CHECK(refined.features.corners.empty());  // found again: the only boundary vertices with one face
         CHECK(refined.features.boundary == BoundaryRule::edge_and_corner);
@@ -236,16 +250,17 @@ TEST_CASE("the two-phase mesh has the numbers, faces and points worked out by ha
     SchemeOptions options = catmull_clark(0, 0.5);
     const Refinement refined = refine_once_with(quad, options);
     REQUIRE(refined.mesh.vertex_count == 4 + 8 + 4);
-    CHECK(shapes::faces_of(refined.mesh) == std::vector<Face>{{12, 13, 14, 15},
-                                                             {4, 5, 13, 12}, {6, 7, 14, 13}, {8, 9, 15, 14}, {10, 11, 12, 15},
-                                                             {0, 4, 12, 11}, {1, 6, 13, 5}, {2, 8, 14, 7}, {3, 10, 15, 9}});
+    CHECK(
+        shapes::faces_of(refined.mesh) ==
+        std::vector<Face>{
+            {12, 13, 14, 15}, {4, 5, 13, 12}, {6, 7, 14, 13}, {8, 9, 15, 14}, {10, 11, 12, 15}, {0, 4, 12, 11}, {1, 6, 13, 5}, {2, 8, 14, 7}, {3, 10, 15, 9}});
     check_point(point(refined.mesh, 1), {16, 0, 0});
-    check_point(point(refined.mesh, 4), {4, 0, 0});    // next to 0 on edge 0-1: half 0, half the midpoint
+    check_point(point(refined.mesh, 4), {4, 0, 0});  // next to 0 on edge 0-1: half 0, half the midpoint
     check_point(point(refined.mesh, 5), {12, 0, 0});
     check_point(point(refined.mesh, 13), {12, 4, 0});  // corner 1 drawn half of the way to the centre
     CHECK(refined.face_parent == std::vector<Index>(9, 0));
     const Refinement round = refine_once_with(with_rule(quad, BoundaryRule::edge_only), options);
-    check_point(point(round.mesh, 1), {15, 1, 0});     // half of 1, half of (6, 1, 1)/8
+    check_point(point(round.mesh, 1), {15, 1, 0});  // half of 1, half of (6, 1, 1)/8
     options.lambda_per_vertex = {0.5, 1, 0.25, 0};
     const Refinement mixed = refine_once_with(quad, options);
     check_point(point(mixed.mesh, 13), {16, 0, 0});
@@ -413,7 +428,8 @@ TEST_CASE("no level gives a copy with named creases, and parents reach back over
 
 TEST_CASE("what a scheme cannot refine is refused in one sentence", "[refine][errors]") {
     const auto cube = shapes::cube();
-    CHECK_THROWS_WITH(refine(cube.mesh, {}, loop_scheme, 1), "face 0 has 4 corners, Loop refines triangles only: triangulate the mesh or choose another scheme");
+    CHECK_THROWS_WITH(refine(cube.mesh, {}, loop_scheme, 1),
+                      "face 0 has 4 corners, Loop refines triangles only: triangulate the mesh or choose another scheme");
     CHECK_THROWS_AS(refine(shapes::cube_split_edges().mesh, {}, doo_sabin, 1), BadInput);
     CHECK_THROWS_WITH(refine(shapes::valence_2_pole().mesh, {}, doo_sabin, 1), Catch::Matchers::Contains("has only two faces all round it"));
     CHECK_THROWS_AS(refine(cube.mesh, {}, catmull_clark(0), -1), InvalidArgument);
@@ -431,5 +447,6 @@ TEST_CASE("levels that cannot be numbered or held are refused at once with the n
     CHECK_THROWS_AS(refine(shapes::cube().mesh, {}, catmull_clark(0), 40), OutOfMemory);
     CHECK_THROWS_AS(refine(shapes::octahedron().mesh, {}, loop_scheme, 40), OutOfMemory);
     CHECK_THROWS_AS(refine(shapes::single_quad().mesh, {}, doo_sabin, 40), OutOfMemory);
-    CHECK_THROWS_WITH(refine(shapes::cube().mesh, {}, catmull_clark(0), 40), Catch::Matchers::Contains("refinement level") && Catch::Matchers::EndsWith("use fewer levels"));
+    CHECK_THROWS_WITH(refine(shapes::cube().mesh, {}, catmull_clark(0), 40),
+                      Catch::Matchers::Contains("refinement level") && Catch::Matchers::EndsWith("use fewer levels"));
 }

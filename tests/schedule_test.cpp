@@ -88,7 +88,8 @@ TEST_CASE("colours are few: at most one more than the most neighbours, face diag
         const Plan plan = Prepared(shape).plan(catmull_clark());
         const Schedule schedule = coloured_schedule(plan);
         std::size_t neighbours = 0;
-        for (std::size_t k = 0; k < schedule.rows.size(); ++k) neighbours = std::max<std::size_t>(neighbours, schedule.offsets[k + 1] - schedule.offsets[k] - 1);
+        for (std::size_t k = 0; k < schedule.rows.size(); ++k)
+            neighbours = std::max<std::size_t>(neighbours, schedule.offsets[k + 1] - schedule.offsets[k] - 1);
         CHECK(schedule.step_offsets.size() - 1 <= neighbours + 1);
         CHECK(schedule.step_offsets.size() - 1 >= 4);  // a quad's corners see each other; so do a vertex of valence 3 and its neighbours
     }

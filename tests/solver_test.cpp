@@ -15,14 +15,18 @@ using namespace solver_test;
 
 namespace {
 
-const std::vector<Solver> all_solvers{Solver::automatic,    Solver::pia,       Solver::wpia, Solver::jacobi, Solver::gauss_seidel, Solver::gauss_seidel_coloured,
-                                      Solver::chebyshev, Solver::conjugate_gradients};
+const std::vector<Solver> all_solvers{
+    Solver::automatic,          Solver::pia, Solver::wpia, Solver::jacobi, Solver::gauss_seidel, Solver::gauss_seidel_coloured, Solver::chebyshev,
+    Solver::conjugate_gradients};
 
 Eigen::MatrixXd positions(const Prepared& mesh) { return oracle::positions(mesh.shape.mesh); }
 
 /// The dense operator, its solution for M, and |A^-1|_inf.
 struct Dense {
-    Dense(const Plan& plan, const Eigen::MatrixXd& m) : a(matrix_of(plan)), solution(oracle::solve(a, m)), inverse_norm(oracle::infinity_norm(oracle::solve(a, Eigen::MatrixXd::Identity(a.rows(), a.cols())))) {}
+    Dense(const Plan& plan, const Eigen::MatrixXd& m)
+        : a(matrix_of(plan)),
+          solution(oracle::solve(a, m)),
+          inverse_norm(oracle::infinity_norm(oracle::solve(a, Eigen::MatrixXd::Identity(a.rows(), a.cols())))) {}
     Eigen::MatrixXd a, solution;
     double inverse_norm;
 };
@@ -43,7 +47,8 @@ void check_converged(const Solved& solved, const Dense& dense, const Eigen::Matr
 
 void check_histories(const SolveReport& report, const oracle::History& plain, double tolerance) {
     REQUIRE(report.residuals.size() == plain.residuals.size());
-    for (std::size_t k = 0; k < plain.residuals.size(); ++k) CHECK(report.residuals[k] == Approx(plain.residuals[k]).epsilon(tolerance).margin(tolerance * plain.residuals[0]));
+    for (std::size_t k = 0; k < plain.residuals.size(); ++k)
+        CHECK(report.residuals[k] == Approx(plain.residuals[k]).epsilon(tolerance).margin(tolerance * plain.residuals[0]));
 }
 
 SolveOptions exact(Solver solver, int sweeps, Precision precision = Precision::full) {
@@ -52,7 +57,9 @@ SolveOptions exact(Solver solver, int sweeps, Precision precision = Precision::f
     return options;
 }
 
-std::vector<Precision> precisions() { return device_context()->device().has_double ? std::vector<Precision>{Precision::mixed, Precision::full} : std::vector<Precision>{Precision::mixed}; }
+std::vector<Precision> precisions() {
+    return device_context()->device().has_double ? std::vector<Precision>{Precision::mixed, Precision::full} : std::vector<Precision>{Precision::mixed};
+}
 bool has_double() { return device_context()->device().has_double; }
 
 }  // namespace
@@ -95,7 +102,9 @@ TEST_CASE("automatic converges on every shape with every scheme that is not sing
 
 TEST_CASE("automatic converges with boundaries, creases and darts at alpha 0 too", "[solver][crease][boundary]") {
     auto list = shapes::feature_shapes();
-    for (const auto& shape : {shapes::grid_quads(4, 3), shapes::grid_with_hole(), shapes::cylinder_open(5, 3), shapes::disk_pole_quads(7), shapes::disk_pole_triangles(9)}) list.push_back(shape);
+    for (const auto& shape :
+         {shapes::grid_quads(4, 3), shapes::grid_with_hole(), shapes::cylinder_open(5, 3), shapes::disk_pole_quads(7), shapes::disk_pole_triangles(9)})
+        list.push_back(shape);
     for (const auto& shape : list) {
         if (shape.name == "cube_with_dart") continue;  // singular: see below
         INFO(shape.name);
@@ -103,7 +112,8 @@ TEST_CASE("automatic converges with boundaries, creases and darts at alpha 0 too
         const Eigen::MatrixXd m = positions(mesh);
         const auto system = mesh.system(device_context(), catmull_clark());
         const Dense dense(system->plan(), m);
-        for (const Precision precision : precisions()) check_converged(solve(*system, m, solve_options(Solver::automatic, 1e-9, precision)), dense, m, 1e-9, system->diagonal);
+        for (const Precision precision : precisions())
+            check_converged(solve(*system, m, solve_options(Solver::automatic, 1e-9, precision)), dense, m, 1e-9, system->diagonal);
         for (const Solver solver : {Solver::pia, Solver::wpia, Solver::gauss_seidel, Solver::gauss_seidel_coloured, Solver::chebyshev})
             check_converged(solve(*system, m, solve_options(solver, 1e-6, Precision::mixed, 3000)), dense, m, 1e-6, system->diagonal);
         if (!system->plan().has_darts()) check_converged(solve(*system, m, solve_options(Solver::conjugate_gradients, 1e-9)), dense, m, 1e-9, system->diagonal);
@@ -132,7 +142,8 @@ TEST_CASE("a tolerance below rounding ends at the precision's floor, with darts 
             const Solved solved = solve(*system, m, solve_options(Solver::automatic, 1e-30, precision));
             CHECK(solved.report.status == SolveStatus::not_converged);
             CHECK(solved.report.max_error <= (precision == Precision::single ? 1e-6 : 1e-13) * system->diagonal);
-            CHECK(oracle::largest_row(m - matrix_of(system->plan()) * solved.points) <= solved.report.max_error + 1e-14);  // fixed rows come back better than they were
+            CHECK(oracle::largest_row(m - matrix_of(system->plan()) * solved.points) <=
+                  solved.report.max_error + 1e-14);  // fixed rows come back better than they were
         }
     }
 }
@@ -157,14 +168,18 @@ TEST_CASE("iterates of PIA, W-PIA, Jacobi and Gauss-Seidel are those of the plai
         for (const Precision precision : precisions()) {
             INFO(shape.name << ", precision " << static_cast<int>(precision));
             const double tolerance = precision == Precision::full ? 1e-12 : 1e-6;
-            const auto points_agree = [&](const Solved& solved, const oracle::History& plain) { return oracle::largest_row(solved.points - plain.points) <= tolerance * system->diagonal; };
+            const auto points_agree = [&](const Solved& solved, const oracle::History& plain) {
+                return oracle::largest_row(solved.points - plain.points) <= tolerance * system->diagonal;
+            };
             for (const int sweeps : {1, 2, 3, 4, 5, 12}) {
                 INFO(sweeps << " sweeps");
                 SolveOptions weighted = exact(Solver::wpia, sweeps, precision);
                 weighted.weight = 1.4;
-                const oracle::History pia = oracle::pia(a, m, sweeps), wpia = oracle::pia(a, m, sweeps, 1.4), jacobi = oracle::jacobi(a, m, sweeps), gs = oracle::gauss_seidel(a, m, sweeps);
+                const oracle::History pia = oracle::pia(a, m, sweeps), wpia = oracle::pia(a, m, sweeps, 1.4), jacobi = oracle::jacobi(a, m, sweeps),
+                                      gs = oracle::gauss_seidel(a, m, sweeps);
                 const Solved device_pia = solve(*system, m, exact(Solver::pia, sweeps, precision)), device_wpia = solve(*system, m, weighted);
-                const Solved device_jacobi = solve(*system, m, exact(Solver::jacobi, sweeps, precision)), device_gs = solve(*system, m, exact(Solver::gauss_seidel, sweeps, precision));
+                const Solved device_jacobi = solve(*system, m, exact(Solver::jacobi, sweeps, precision)),
+                             device_gs = solve(*system, m, exact(Solver::gauss_seidel, sweeps, precision));
                 check_histories(device_pia.report, pia, tolerance);
                 check_histories(device_wpia.report, wpia, tolerance);
                 check_histories(device_jacobi.report, jacobi, tolerance);
@@ -201,7 +216,8 @@ TEST_CASE("coloured Gauss-Seidel has other iterates than natural, and the same e
     const Prepared mesh(shapes::rough(shapes::random_triangle_mesh(150, 9), 0.1, 1));
     const Eigen::MatrixXd m = positions(mesh);
     const auto system = mesh.system(device_context(), loop());
-    const Solved natural = solve(*system, m, exact(Solver::gauss_seidel, 2, Precision::mixed)), coloured = solve(*system, m, exact(Solver::gauss_seidel_coloured, 2, Precision::mixed));
+    const Solved natural = solve(*system, m, exact(Solver::gauss_seidel, 2, Precision::mixed)),
+                 coloured = solve(*system, m, exact(Solver::gauss_seidel_coloured, 2, Precision::mixed));
     CHECK(largest(natural.points - coloured.points) > 1e-4);
     const Solved a = solve(*system, m, solve_options(Solver::gauss_seidel, 1e-10)), b = solve(*system, m, solve_options(Solver::gauss_seidel_coloured, 1e-10));
     CHECK(a.report.status == SolveStatus::converged);
@@ -244,7 +260,8 @@ TEST_CASE("Jacobi says that it diverges on a regular Catmull-Clark mesh, and con
         CHECK(diverged.report.message.find("lambda of 1/3 or more") != std::string::npos);
         CHECK(diverged.report.iterations < 100);
         const auto dominant = mesh.system(device_context(), catmull_clark(0, 0.4));
-        if (precision == Precision::mixed) check_converged(solve(*dominant, m, solve_options(Solver::jacobi)), Dense(dominant->plan(), m), m, 1e-6, dominant->diagonal);
+        if (precision == Precision::mixed)
+            check_converged(solve(*dominant, m, solve_options(Solver::jacobi)), Dense(dominant->plan(), m), m, 1e-6, dominant->diagonal);
     }
 }
 
@@ -295,7 +312,8 @@ TEST_CASE("a tolerance of 1e-12 is reached with pairs of floats", "[solver][prec
         INFO(shape.name);
         const auto system = mesh.system(context_without_double(), loop());
         const Dense dense(system->plan(), m);
-        for (const Solver solver : {Solver::automatic, Solver::gauss_seidel}) check_converged(solve(*system, m, solve_options(solver, 1e-12)), dense, m, 1e-12, system->diagonal);
+        for (const Solver solver : {Solver::automatic, Solver::gauss_seidel})
+            check_converged(solve(*system, m, solve_options(solver, 1e-12)), dense, m, 1e-12, system->diagonal);
         CHECK_THROWS_AS(solve(*system, m, solve_options(Solver::automatic, 1e-6, Precision::full)), Unsupported);
     }
 }
@@ -309,7 +327,8 @@ TEST_CASE("a CPU that is swept as a GPU gives the same solution", "[solver]") {
     const Eigen::MatrixXd m = positions(mesh);
     const auto system = mesh.system(context, catmull_clark(0.5));
     const Dense dense(system->plan(), m);
-    for (const Solver solver : {Solver::automatic, Solver::gauss_seidel}) check_converged(solve(*system, m, solve_options(solver, 1e-10)), dense, m, 1e-10, system->diagonal);
+    for (const Solver solver : {Solver::automatic, Solver::gauss_seidel})
+        check_converged(solve(*system, m, solve_options(solver, 1e-10)), dense, m, 1e-10, system->diagonal);
 }
 
 TEST_CASE("single precision is honest about where it ends", "[solver][precision]") {
@@ -364,7 +383,8 @@ TEST_CASE("a model of size 1 that is 1e6 away loses nothing", "[solver][scale]")
     const Solved near = solve(*system, m, options), away = solve(*system, far, options);
     CHECK(away.report.status == SolveStatus::converged);
     CHECK(away.report.max_error <= 1e-6);
-    CHECK(largest((away.points.array() - 1e6).matrix() - near.points) <= 1e-9 + 2 * 1.2e-10 * Dense(system->plan(), m).inverse_norm);  // M's own rounding at 1e6
+    CHECK(largest((away.points.array() - 1e6).matrix() - near.points) <=
+          1e-9 + 2 * 1.2e-10 * Dense(system->plan(), m).inverse_norm);  // M's own rounding at 1e6
 }
 
 TEST_CASE("huge and tiny models are solved like others", "[solver][scale]") {
@@ -403,7 +423,8 @@ TEST_CASE("every solver gives the same bits for the same input", "[solver]") {
     for (const Solver solver : all_solvers) {
         if (solver == Solver::jacobi) continue;
         INFO("solver " << static_cast<int>(solver));
-        const Solved first = solve(*system, m, solve_options(solver)), second = solve(*system, m, solve_options(solver)), third = solve(*again, m, solve_options(solver));
+        const Solved first = solve(*system, m, solve_options(solver)), second = solve(*system, m, solve_options(solver)),
+                     third = solve(*again, m, solve_options(solver));
         CHECK(first.points == second.points);
         CHECK(first.points == third.points);
         CHECK(first.report.residuals == third.report.residuals);
@@ -427,7 +448,8 @@ TEST_CASE("a warm start needs fewer iterations", "[solver][warm-start]") {
     }
 }
 
-TEST_CASE("fixed vertices hold the given values after a warm start from anywhere, and the residual is that of what comes back", "[solver][warm-start][boundary]") {
+TEST_CASE("fixed vertices hold the given values after a warm start from anywhere, and the residual is that of what comes back",
+          "[solver][warm-start][boundary]") {
     const Prepared mesh(shapes::with_isolated_vertex(shapes::rough(shapes::grid_quads(6, 5), 0.05, 1), 4));
     const Eigen::MatrixXd m = positions(mesh), start = m + 0.3 * rough_values(m.rows(), 3, 3);
     const auto system = mesh.system(device_context(), catmull_clark());
@@ -490,7 +512,8 @@ TEST_CASE("a progress callback sees every residual, and can cancel", "[solver][p
             };
             const Solved solved = solve(*system, m, options);
             REQUIRE(seen.size() == solved.report.residuals.size());
-            for (std::size_t k = 0; k < seen.size(); ++k) CHECK(seen[k] == Approx(solved.report.residuals[k]).epsilon(1e-3).margin(1e-6 * solved.report.residuals[0]));
+            for (std::size_t k = 0; k < seen.size(); ++k)
+                CHECK(seen[k] == Approx(solved.report.residuals[k]).epsilon(1e-3).margin(1e-6 * solved.report.residuals[0]));
             options.progress = [](int iteration, double, double) { return iteration < 3; };
             CHECK_THROWS_AS(solve(*system, m, options), Cancelled);
             CHECK_THROWS_WITH(solve(*system, m, options), "the solve was cancelled after 3 iterations");
@@ -518,8 +541,8 @@ TEST_CASE("two threads with two contexts solve at once", "[solver][thread]") {
 }
 
 TEST_CASE("curves are solved directly, closed and open, double at the ends of a Doo-Sabin crease", "[solver][curves]") {
-    for (const auto& shape : {shapes::grid_with_creases(), shapes::cylinder_open(5, 3), shapes::torus_with_dart(), shapes::cube_with_crease_loop(), shapes::icosphere_with_crease_loop(),
-                              shapes::grid_with_hole(), shapes::disk_pole_triangles(9)})
+    for (const auto& shape : {shapes::grid_with_creases(), shapes::cylinder_open(5, 3), shapes::torus_with_dart(), shapes::cube_with_crease_loop(),
+                              shapes::icosphere_with_crease_loop(), shapes::grid_with_hole(), shapes::disk_pole_triangles(9)})
         for (const auto& scheme : {catmull_clark(), catmull_clark(0.5, 0.25), loop(), doo_sabin()}) {
             if (!suits(shape, scheme)) continue;
             INFO(shape.name << ", " << scheme_name(scheme.scheme));
@@ -537,7 +560,8 @@ TEST_CASE("curves are solved directly, closed and open, double at the ends of a 
                 for (int c = 0; c < 2; ++c) points(plan.vertex_of_row[row], c) = p[2 * row + c];
             const Eigen::MatrixXd residual = values - a * points;
             for (Index row = 0; row < plan.curves.end_row(); ++row) CHECK(largest(residual.row(plan.vertex_of_row[row])) < 1e-14);
-            for (Index row = plan.curves.end_row(); row < plan.row_count; ++row) CHECK(points.row(plan.vertex_of_row[row]) == values.row(plan.vertex_of_row[row]));
+            for (Index row = plan.curves.end_row(); row < plan.row_count; ++row)
+                CHECK(points.row(plan.vertex_of_row[row]) == values.row(plan.vertex_of_row[row]));
         }
 }
 
@@ -581,7 +605,8 @@ TEST_CASE("the norm of the inverse is proven under dominance, and elsewhere esti
             Eigen::MatrixXd block(plan.smooth.row_count, plan.smooth.row_count);
             const Eigen::MatrixXd a = matrix_of(plan);
             for (Index i = 0; i < plan.smooth.row_count; ++i)
-                for (Index j = 0; j < plan.smooth.row_count; ++j) block(i, j) = a(plan.vertex_of_row[plan.smooth.first_row + i], plan.vertex_of_row[plan.smooth.first_row + j]);
+                for (Index j = 0; j < plan.smooth.row_count; ++j)
+                    block(i, j) = a(plan.vertex_of_row[plan.smooth.first_row + i], plan.vertex_of_row[plan.smooth.first_row + j]);
             const double truth = oracle::infinity_norm(block.inverse());
             const InverseNorm& norm = inverse_norm_of(*system);
             if (norm.proven) {

@@ -94,7 +94,8 @@ TEST_CASE("all-valence-3 meshes with an odd cycle are only nearly singular", "[s
         shapes::Shape shape;
         double lambda_min;
     };
-    for (const auto& [shape, lambda_min] : {Known{shapes::tetrahedron(), 2.0 / 9}, Known{shapes::dodecahedron(), (10 - 3.6 * std::sqrt(5.0)) / 24}, Known{shapes::triangular_prism(), 1.0 / 12}}) {
+    for (const auto& [shape, lambda_min] : {Known{shapes::tetrahedron(), 2.0 / 9}, Known{shapes::dodecahedron(), (10 - 3.6 * std::sqrt(5.0)) / 24},
+                                            Known{shapes::triangular_prism(), 1.0 / 12}}) {
         INFO(shape.name);
         CHECK(!is_singular(shape, catmull_clark()));
         const Prepared mesh(shape);
@@ -178,8 +179,9 @@ TEST_CASE("Loop and Doo-Sabin are never singular", "[spectrum][singular]") {
 
 TEST_CASE("the smallest eigenvalue is estimated from above, within 7 per cent, and not below its bound", "[spectrum]") {
     auto list = shapes::closed_shapes();
-    for (const auto& shape : {shapes::grid_quads(9, 8), shapes::grid_triangles(7, 9), shapes::icosphere_with_crease_loop(), shapes::grid_with_hole(), shapes::box_with_crease_angle(),
-                              shapes::random_triangle_mesh(400, 5), shapes::polygons_mixed(300, 6), shapes::torus_quads(16, 12)})
+    for (const auto& shape :
+         {shapes::grid_quads(9, 8), shapes::grid_triangles(7, 9), shapes::icosphere_with_crease_loop(), shapes::grid_with_hole(),
+          shapes::box_with_crease_angle(), shapes::random_triangle_mesh(400, 5), shapes::polygons_mixed(300, 6), shapes::torus_quads(16, 12)})
         list.push_back(shape);
     for (const auto& shape : list) {
         const Prepared mesh(shape);
@@ -219,7 +221,8 @@ TEST_CASE("with darts nothing is claimed of the spectrum", "[spectrum][crease]")
 
 TEST_CASE("curves bring their own bound, 1/3 or 1/2 for Doo-Sabin", "[spectrum][boundary]") {
     const Prepared mesh(shapes::cylinder_open(7, 1));  // every vertex is on a boundary curve
-    const auto cubic = mesh.system(device_context(), catmull_clark()), quadratic = mesh.system(device_context(), doo_sabin()), blended = mesh.system(device_context(), catmull_clark(0, 0.4));
+    const auto cubic = mesh.system(device_context(), catmull_clark()), quadratic = mesh.system(device_context(), doo_sabin()),
+               blended = mesh.system(device_context(), catmull_clark(0, 0.4));
     CHECK(spectrum_of(*cubic).estimate == Approx(1.0 / 3));
     CHECK(spectrum_of(*quadratic).estimate == Approx(0.5));
     CHECK(spectrum_of(*blended).estimate == Approx(0.4 + 0.6 / 3));

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// One solve on one mesh in two parts, as the nodes of a cluster do it: rows for the owned vertices, ghosts exchanged after each sweep. With two devices each part has its own.
+// One solve on one mesh in two parts, as the nodes of a cluster do it: rows for the owned vertices, ghosts exchanged after each sweep. With two devices each
+// part has its own.
 #include <algorithm>
 #include <array>
 #include <map>
@@ -70,7 +71,8 @@ Extract local_extract(const lcl::PolygonMesh& mesh, const IsOwned& is_owned) {
     std::map<int, int> number;
     const std::vector<shapes::Face> all = shapes::faces_of(mesh);
     std::vector<char> vertices = is_owned, marks = faces_at(all, vertices);
-    for (std::vector<char> more = joints(all, marks, mesh.vertex_count); std::count(more.begin(), more.end(), 1) > 0; more = joints(all, marks, mesh.vertex_count)) {
+    for (std::vector<char> more = joints(all, marks, mesh.vertex_count); std::count(more.begin(), more.end(), 1) > 0;
+         more = joints(all, marks, mesh.vertex_count)) {
         for (std::size_t v = 0; v < more.size(); ++v) vertices[v] |= more[v];
         marks = faces_at(all, vertices);
     }
@@ -115,7 +117,8 @@ public:
     /// y = a x + b (M - A x) + c y on a range of blocks; the largest residual of its rows.
     double sweep(const std::array<double, 3>& factors, int first_block = 0, int block_count = -1) {
         double residual = -1;
-        succeed(lcl_operator_step(A_.get(), factors[0], factors[1], factors[2], M_.get(), x_.get(), factors[2] == 0 ? nullptr : y_.get(), y_.get(), first_block, block_count, &residual));
+        succeed(lcl_operator_step(A_.get(), factors[0], factors[1], factors[2], M_.get(), x_.get(), factors[2] == 0 ? nullptr : y_.get(), y_.get(), first_block,
+                                  block_count, &residual));
         return residual;
     }
 
@@ -174,7 +177,8 @@ struct Run {
     std::vector<double> points, residuals;
 };
 
-/// Drives all parts through a recurrence; with `overlap` each sweep is made in two ranges of blocks, as one does to exchange the first while the second is computed.
+/// Drives all parts through a recurrence; with `overlap` each sweep is made in two ranges of blocks, as one does to exchange the first while the second is
+/// computed.
 Run run(std::vector<Part>& parts, const Recurrence& recurrence, std::size_t vertex_count, bool overlap) {
     Run result{std::vector<double>(3 * vertex_count), {}};
     for (const auto& factors : recurrence) {
@@ -219,10 +223,11 @@ void expect_same(const Run& found, const Run& expected, double diagonal) {
 }  // namespace
 
 TEST_CASE("PIA on two parts has the residual history of one device and of lcl_interpolate", "[split][capi][device]") {
-    const auto [shape, options] = GENERATE(table<shapes::Shape, lcl_scheme_options>({{shapes::rough(shapes::torus_quads(16, 9), 0.03, 4), scheme(LCL_SCHEME_CATMULL_CLARK)},
-                                                                                     {shapes::rough(shapes::grid_quads(13, 11), 0.03, 4), scheme(LCL_SCHEME_CATMULL_CLARK, 0.5, 0.2)},
-                                                                                     {shapes::rough(shapes::icosphere(2), 0.03, 4), scheme(LCL_SCHEME_LOOP)},
-                                                                                     {shapes::rough(shapes::polygons_mixed(150, 6), 0.03, 4), scheme(LCL_SCHEME_DOO_SABIN)}}));
+    const auto [shape, options] =
+        GENERATE(table<shapes::Shape, lcl_scheme_options>({{shapes::rough(shapes::torus_quads(16, 9), 0.03, 4), scheme(LCL_SCHEME_CATMULL_CLARK)},
+                                                           {shapes::rough(shapes::grid_quads(13, 11), 0.03, 4), scheme(LCL_SCHEME_CATMULL_CLARK, 0.5, 0.2)},
+                                                           {shapes::rough(shapes::icosphere(2), 0.03, 4), scheme(LCL_SCHEME_LOOP)},
+                                                           {shapes::rough(shapes::polygons_mixed(150, 6), 0.03, 4), scheme(LCL_SCHEME_DOO_SABIN)}}));
     CAPTURE(shape.name);
     const int sweeps = 25;
     const TwoContexts contexts;
@@ -270,7 +275,8 @@ TEST_CASE("sweeps of parts in two ranges of blocks change nothing", "[split][cap
     const lcl_scheme_options options = scheme(LCL_SCHEME_CATMULL_CLARK);
     const Recurrence recurrence = GENERATE(pia(6), chebyshev(6, 1.0 / 9));
     const TwoContexts contexts;
-    auto whole = contexts.whole(shape, options), parts = contexts.split(shape, options, local_extract), in_ranges = contexts.split(shape, options, local_extract);
+    auto whole = contexts.whole(shape, options), parts = contexts.split(shape, options, local_extract),
+         in_ranges = contexts.split(shape, options, local_extract);
     for (const Part& part : in_ranges) REQUIRE(part.block_count() >= 4);
     const Run expected = run(whole, recurrence, shape.mesh.vertex_count, false), found = run(parts, recurrence, shape.mesh.vertex_count, false),
               overlapped = run(in_ranges, recurrence, shape.mesh.vertex_count, true);

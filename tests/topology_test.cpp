@@ -100,9 +100,15 @@ TEST_CASE("Euler characteristic, boundary loops and components of known surfaces
         Index euler, loops, components;
     };
     const Known known[] = {
-        {shapes::cube(), 2, 0, 1},           {shapes::torus_quads(4, 5), 0, 0, 1},    {shapes::hexagonal_torus(4, 4), 0, 0, 1},
-        {shapes::single_hexagon(), 1, 1, 1}, {shapes::grid_with_hole(), 0, 2, 1},     {shapes::cylinder_open(6, 2), 0, 2, 1},
-        {shapes::two_components(), 4, 0, 2}, {shapes::icosphere_quads(1), 2, 0, 1},   {shapes::random_triangle_mesh(300, 7), 2, 0, 1},
+        {shapes::cube(), 2, 0, 1},
+        {shapes::torus_quads(4, 5), 0, 0, 1},
+        {shapes::hexagonal_torus(4, 4), 0, 0, 1},
+        {shapes::single_hexagon(), 1, 1, 1},
+        {shapes::grid_with_hole(), 0, 2, 1},
+        {shapes::cylinder_open(6, 2), 0, 2, 1},
+        {shapes::two_components(), 4, 0, 2},
+        {shapes::icosphere_quads(1), 2, 0, 1},
+        {shapes::random_triangle_mesh(300, 7), 2, 0, 1},
         {shapes::with_isolated_vertex(shapes::two_components(), 3), 4, 0, 2},
     };
     for (const auto& [shape, euler, loops, components] : known) {

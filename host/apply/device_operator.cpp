@@ -127,34 +127,37 @@ LaunchSize DeviceOperator::size(const Part& part) const { return {static_cast<st
 
 void DeviceOperator::limit_points(const Field& x, Field& y, const Part& part) {
     for (std::size_t b = 0; b < x.blocks().size(); ++b)
-        launch(*context_, kernel("limit", "lcl_limit_points", x, b), size(part), part.first_block, blocks_, runs_, weights(x.real(), false), indices_, weighted_offsets_,
-               weighted_indices_, weights(x.real(), true), x.buffer(b), y.buffer(b));
+        launch(*context_, kernel("limit", "lcl_limit_points", x, b), size(part), part.first_block, blocks_, runs_, weights(x.real(), false), indices_,
+               weighted_offsets_, weighted_indices_, weights(x.real(), true), x.buffer(b), y.buffer(b));
 }
 
 // y = a x + (b + b_jacobi / A_ii) (m - A x) + c d
 void DeviceOperator::sweep(const Sweep& s, const Field& m, const Field& x, const Field* d, Field& y, const Part& part) {
     const bool as_double = is_double(*context_, x.real());
-    const RealValue a = real_value(as_double, {s.a}), b = real_value(as_double, {s.b}), b_jacobi = real_value(as_double, {s.b_jacobi}), c = real_value(as_double, {s.c});
+    const RealValue a = real_value(as_double, {s.a}), b = real_value(as_double, {s.b}), b_jacobi = real_value(as_double, {s.b_jacobi}),
+                    c = real_value(as_double, {s.c});
     for (std::size_t k = 0; k < x.blocks().size(); ++k) {
         const Buffer& norms = partials(x).norms[k];
         if (d == nullptr)
-            launch(*context_, kernel("relax", "lcl_relax", x, k), size(part), part.first_block, blocks_, runs_, weights(x.real(), false), indices_, weighted_offsets_, weighted_indices_,
-                   weights(x.real(), true), a, b, b_jacobi, m.buffer(k), x.buffer(k), y.buffer(k), norms);
+            launch(*context_, kernel("relax", "lcl_relax", x, k), size(part), part.first_block, blocks_, runs_, weights(x.real(), false), indices_,
+                   weighted_offsets_, weighted_indices_, weights(x.real(), true), a, b, b_jacobi, m.buffer(k), x.buffer(k), y.buffer(k), norms);
         else
-            launch(*context_, kernel("relax", "lcl_relax_three_term", x, k), size(part), part.first_block, blocks_, runs_, weights(x.real(), false), indices_, weighted_offsets_,
-                   weighted_indices_, weights(x.real(), true), a, b, b_jacobi, c, m.buffer(k), x.buffer(k), d->buffer(k), y.buffer(k), norms);
+            launch(*context_, kernel("relax", "lcl_relax_three_term", x, k), size(part), part.first_block, blocks_, runs_, weights(x.real(), false), indices_,
+                   weighted_offsets_, weighted_indices_, weights(x.real(), true), a, b, b_jacobi, c, m.buffer(k), x.buffer(k), d->buffer(k), y.buffer(k),
+                   norms);
     }
 }
 
 void DeviceOperator::wide_residual(const Field& m, const Field& x, Field& r, const Part& part) {
     for (std::size_t b = 0; b < x.blocks().size(); ++b)
-        launch(*context_, kernel("residual", "lcl_residual", x, b), size(part), part.first_block, blocks_, runs_, weights(x.real(), false), indices_, weighted_offsets_, weighted_indices_,
-               weights(x.real(), true), m.buffer(b), x.buffer(b), r.buffer(b), partials(r).norms[b]);
+        launch(*context_, kernel("residual", "lcl_residual", x, b), size(part), part.first_block, blocks_, runs_, weights(x.real(), false), indices_,
+               weighted_offsets_, weighted_indices_, weights(x.real(), true), m.buffer(b), x.buffer(b), r.buffer(b), partials(r).norms[b]);
 }
 
 void DeviceOperator::correct(const Field& d, Field& x, const Part& part) {
     for (std::size_t b = 0; b < x.blocks().size(); ++b)
-        launch(*context_, kernel("residual", "lcl_correct", x, b), {static_cast<std::size_t>(part.row_count), 0}, part.first_row, part.row_count, d.buffer(b), x.buffer(b));
+        launch(*context_, kernel("residual", "lcl_correct", x, b), {static_cast<std::size_t>(part.row_count), 0}, part.first_row, part.row_count, d.buffer(b),
+               x.buffer(b));
 }
 
 void DeviceOperator::narrow(const Field& x, Field& y) {
@@ -180,8 +183,8 @@ void DeviceOperator::relax_rows(const Schedule& schedule, const Field& m, Field&
         const Index first = schedule.step_offsets[step], count = schedule.step_offsets[step + 1] - first;
         const std::size_t items = (count + chunk - 1) / chunk, local = static_cast<std::size_t>(group_);
         for (std::size_t b = 0; b < x.blocks().size(); ++b)
-            launch(*context_, kernel("gauss_seidel", "lcl_relax_rows", x, b), {(items + local - 1) / local * local, local}, first, count, chunk, arrays.rows, arrays.offsets, arrays.columns,
-                   arrays.weights, arrays.inverse_diagonal, m.buffer(b), x.buffer(b));
+            launch(*context_, kernel("gauss_seidel", "lcl_relax_rows", x, b), {(items + local - 1) / local * local, local}, first, count, chunk, arrays.rows,
+                   arrays.offsets, arrays.columns, arrays.weights, arrays.inverse_diagonal, m.buffer(b), x.buffer(b));
     }
 }
 
@@ -213,7 +216,8 @@ ChannelValues DeviceOperator::sums(const Field& field, const Part& part) {
     for (std::size_t b = 0; b < field.blocks().size(); ++b) {
         const ChannelBlock& block = field.blocks()[b];
         std::vector<unsigned char> raw(static_cast<std::size_t>(part.block_count) * block.width * bytes);
-        if (!raw.empty()) context_->read(partials(field).sums[b], static_cast<std::size_t>(part.first_block) * block.width * bytes, raw.size(), raw.data(), "reading sums");
+        if (!raw.empty())
+            context_->read(partials(field).sums[b], static_cast<std::size_t>(part.first_block) * block.width * bytes, raw.size(), raw.data(), "reading sums");
         for (Index i = 0; i < part.block_count; ++i)
             for (int c = 0; c < block.count; ++c) {
                 float narrow;
@@ -229,8 +233,8 @@ ChannelValues DeviceOperator::sums(const Field& field, const Part& part) {
 
 ChannelValues DeviceOperator::cg_apply(const Field& p, Field& q, const Part& part) {
     for (std::size_t b = 0; b < p.blocks().size(); ++b)
-        launch(*context_, kernel("conjugate_gradients", "lcl_cg_apply", p, b), size(part), part.first_block, blocks_, runs_, weights(p.real(), false), indices_, weighted_offsets_,
-               weighted_indices_, weights(p.real(), true), scaling(p.real()), p.buffer(b), q.buffer(b), partials(p).sums[b]);
+        launch(*context_, kernel("conjugate_gradients", "lcl_cg_apply", p, b), size(part), part.first_block, blocks_, runs_, weights(p.real(), false), indices_,
+               weighted_offsets_, weighted_indices_, weights(p.real(), true), scaling(p.real()), p.buffer(b), q.buffer(b), partials(p).sums[b]);
     return sums(p, part);
 }
 
@@ -238,15 +242,16 @@ ChannelValues DeviceOperator::cg_apply(const Field& p, Field& q, const Part& par
 ChannelValues DeviceOperator::cg_update(const ChannelValues& alpha, const Field& p, const Field& q, Field& x, Field& r, const Part& part) {
     for (std::size_t b = 0; b < p.blocks().size(); ++b)
         launch(*context_, kernel("conjugate_gradients", "lcl_cg_update", p, b), size(part), part.first_block, blocks_, scaling(p.real()),
-               row_value(is_double(*context_, p.real()), p.blocks()[b], alpha), p.buffer(b), q.buffer(b), x.buffer(b), r.buffer(b), partials(p).sums[b], partials(p).norms[b]);
+               row_value(is_double(*context_, p.real()), p.blocks()[b], alpha), p.buffer(b), q.buffer(b), x.buffer(b), r.buffer(b), partials(p).sums[b],
+               partials(p).norms[b]);
     return sums(p, part);
 }
 
 // p = r + beta p
 void DeviceOperator::cg_direction(const ChannelValues& beta, const Field& r, Field& p, const Part& part) {
     for (std::size_t b = 0; b < p.blocks().size(); ++b)
-        launch(*context_, kernel("conjugate_gradients", "lcl_cg_direction", p, b), size(part), part.first_block, blocks_, row_value(is_double(*context_, p.real()), p.blocks()[b], beta),
-               r.buffer(b), p.buffer(b));
+        launch(*context_, kernel("conjugate_gradients", "lcl_cg_direction", p, b), size(part), part.first_block, blocks_,
+               row_value(is_double(*context_, p.real()), p.blocks()[b], beta), r.buffer(b), p.buffer(b));
 }
 
 }  // namespace lcl

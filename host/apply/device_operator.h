@@ -15,8 +15,8 @@ namespace lcl {
 
 /// How blocks are swept: CPUs take one work-item a block of many rows, GPUs a work-group a block of fewer.
 struct LaunchShape {
-    int group = 1;           ///< work-items a block, a power of two
-    Index block_rows = 8192; ///< for PlanOptions
+    int group = 1;            ///< work-items a block, a power of two
+    Index block_rows = 8192;  ///< for PlanOptions
 };
 LaunchShape launch_shape(const DeviceInfo& device);
 
@@ -65,8 +65,12 @@ public:
     void cg_direction(const ChannelValues& beta, const Field& r, Field& p, const Part& part);
 
 private:
-    struct ScheduleArrays { Buffer rows, offsets, columns, weights, inverse_diagonal; };
-    struct Partials { std::vector<Buffer> norms, sums; };  // a channel block each
+    struct ScheduleArrays {
+        Buffer rows, offsets, columns, weights, inverse_diagonal;
+    };
+    struct Partials {
+        std::vector<Buffer> norms, sums;
+    };  // a channel block each
     const Buffer& weights(Real real, bool weighted_rows);
     const Buffer& scaling(Real real);
     Partials& partials(const Field& field);

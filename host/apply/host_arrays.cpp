@@ -18,7 +18,8 @@ std::vector<double> kept_rows(const Plan& plan, const double* values, std::size_
 }
 
 void restore_rows(const Plan& plan, const std::vector<double>& kept, int channels, double* values, std::size_t stride) {
-    for (Index row = 0; row < plan.fixed.end_row(); ++row) std::copy_n(&kept[static_cast<std::size_t>(row) * channels], channels, values + plan.vertex_of_row[row] * stride);
+    for (Index row = 0; row < plan.fixed.end_row(); ++row)
+        std::copy_n(&kept[static_cast<std::size_t>(row) * channels], channels, values + plan.vertex_of_row[row] * stride);
 }
 
 void limit_points(DeviceOperator& A, const double* points, std::size_t stride, int channels, Precision precision, double* out, std::size_t out_stride) {

@@ -17,7 +17,8 @@ Real real_of(Precision precision);
 std::vector<double> kept_rows(const Plan& plan, const double* values, std::size_t stride, int channels);
 void restore_rows(const Plan& plan, const std::vector<double>& kept, int channels, double* values, std::size_t stride);
 
-/// out = A points. points, out: vertex_count rows of `channels`, stride apart, in the caller's order; out may be points. Ghosts keep their values. BadInput as fit_transform.
+/// out = A points. points, out: vertex_count rows of `channels`, stride apart, in the caller's order; out may be points. Ghosts keep their values. BadInput as
+/// fit_transform.
 void limit_points(DeviceOperator& A, const double* points, std::size_t stride, int channels, Precision precision, double* out, std::size_t out_stride);
 
 }  // namespace lcl

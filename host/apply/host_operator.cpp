@@ -26,17 +26,21 @@ void gather(const Plan& plan, const Run& run, Index row, const double* x, int ch
 }
 
 /// body(row, A x of that row) for every row, in parallel over blocks.
-template <class Body> void for_each_row(const Plan& plan, const std::vector<double>& x, int channels, const Body& body) {
-    parallel_for(plan.blocks.size(), [&](std::size_t begin, std::size_t end) {
-        std::vector<double> ax(channels);
-        for (std::size_t b = begin; b < end; ++b)
-            for (Index r = plan.blocks[b].first_run; r < plan.blocks[b].first_run + plan.blocks[b].run_count; ++r)
-                for (Index row = plan.runs[r].first; row < plan.runs[r].first + plan.runs[r].count; ++row) {
-                    std::fill(ax.begin(), ax.end(), 0.0);
-                    gather(plan, plan.runs[r], row, x.data(), channels, ax.data());
-                    body(row, ax.data());
-                }
-    }, 4);
+template <class Body>
+void for_each_row(const Plan& plan, const std::vector<double>& x, int channels, const Body& body) {
+    parallel_for(
+        plan.blocks.size(),
+        [&](std::size_t begin, std::size_t end) {
+            std::vector<double> ax(channels);
+            for (std::size_t b = begin; b < end; ++b)
+                for (Index r = plan.blocks[b].first_run; r < plan.blocks[b].first_run + plan.blocks[b].run_count; ++r)
+                    for (Index row = plan.runs[r].first; row < plan.runs[r].first + plan.runs[r].count; ++row) {
+                        std::fill(ax.begin(), ax.end(), 0.0);
+                        gather(plan, plan.runs[r], row, x.data(), channels, ax.data());
+                        body(row, ax.data());
+                    }
+        },
+        4);
 }
 
 }  // namespace

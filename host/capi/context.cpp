@@ -30,7 +30,10 @@ extern "C" {
 
 int32_t lcl_device_count(void) {
     int32_t count = 0;
-    guarded([&] { count = static_cast<int32_t>(list_devices().size()); return LCL_OK; });
+    guarded([&] {
+        count = static_cast<int32_t>(list_devices().size());
+        return LCL_OK;
+    });
     return count;
 }
 
@@ -66,11 +69,17 @@ void lcl_context_retain(lcl_context context) { retain(context); }
 void lcl_context_release(lcl_context context) { release(context); }
 
 lcl_status lcl_context_get_device(lcl_context context, lcl_device_info* info) {
-    return guarded([&] { give(info, public_info(required(context, "context")->context->device()), "info"); return LCL_OK; });
+    return guarded([&] {
+        give(info, public_info(required(context, "context")->context->device()), "info");
+        return LCL_OK;
+    });
 }
 
 lcl_status lcl_context_finish(lcl_context context) {
-    return guarded([&] { required(context, "context")->context->finish(); return LCL_OK; });
+    return guarded([&] {
+        required(context, "context")->context->finish();
+        return LCL_OK;
+    });
 }
 
 double lcl_context_compile_seconds(lcl_context context) { return context ? context->context->compile_seconds() : 0; }
@@ -82,7 +91,9 @@ lcl_status lcl_context_selftest(lcl_context context, lcl_selftest_callback callb
             if (callback != nullptr) callback(user, r.kernel.c_str(), r.what.c_str(), r.difference, r.tolerance, r.passed());
         });
         if (agree) return LCL_OK;
-        last_error() = {"some kernels disagree with the plain host operator on " + context->context->device().name + ": do not trust results of this device, and report its driver's version", {}};
+        last_error() = {"some kernels disagree with the plain host operator on " + context->context->device().name +
+                            ": do not trust results of this device, and report its driver's version",
+                        {}};
         return LCL_ERROR_INTERNAL;
     });
 }

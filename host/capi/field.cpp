@@ -16,7 +16,8 @@ bool same(const Transform& a, const Transform& b) { return a.centre == b.centre 
 bool is_affine(double a, double c) { return std::abs(a + c - 1) <= 4 * std::numeric_limits<double>::epsilon() * (std::abs(a) + std::abs(c)); }
 
 const Transform& transform_of(lcl_field field, const char* name) {
-    if (!field->transform) throw InvalidArgument(std::string("the field ") + name + " holds no values yet: upload them, or give it a centre and scale by lcl_field_match");
+    if (!field->transform)
+        throw InvalidArgument(std::string("the field ") + name + " holds no values yet: upload them, or give it a centre and scale by lcl_field_match");
     return *field->transform;
 }
 
@@ -32,7 +33,8 @@ std::vector<double> read_rows(const void* values, lcl_type type, std::size_t str
 
 void check_type(lcl_type type, std::size_t stride, int channels) {
     if (type != LCL_TYPE_DOUBLE && type != LCL_TYPE_FLOAT) throw InvalidArgument("type is " + std::to_string(type) + ", it is 0 (double) or 1 (float)");
-    if (stride < static_cast<std::size_t>(channels)) throw InvalidArgument("stride is " + std::to_string(stride) + ", less than the " + std::to_string(channels) + " channels");
+    if (stride < static_cast<std::size_t>(channels))
+        throw InvalidArgument("stride is " + std::to_string(stride) + ", less than the " + std::to_string(channels) + " channels");
 }
 
 /// Rows of the plan for a list of vertices, and the places of the list in ascending order of rows: neighbours in memory travel together.
@@ -45,7 +47,8 @@ RowList row_list(const Plan& plan, const int32_t* vertices, std::size_t count) {
     RowList list;
     for (std::size_t i = 0; i < count; ++i) {
         if (vertices[i] < 0 || vertices[i] >= plan.vertex_count)
-            throw InvalidArgument("vertex " + std::to_string(vertices[i]) + " was asked for, the field has " + std::to_string(plan.vertex_count), {{vertices[i]}, {}});
+            throw InvalidArgument("vertex " + std::to_string(vertices[i]) + " was asked for, the field has " + std::to_string(plan.vertex_count),
+                                  {{vertices[i]}, {}});
         list.rows.push_back(plan.row_of_vertex[vertices[i]]);
     }
     list.order.resize(count);
@@ -55,7 +58,8 @@ RowList row_list(const Plan& plan, const int32_t* vertices, std::size_t count) {
 }
 
 /// body(begin, end) for each stretch of order whose rows follow each other.
-template <class Body> void for_each_stretch(const RowList& list, const Body& body) {
+template <class Body>
+void for_each_stretch(const RowList& list, const Body& body) {
     for (std::size_t begin = 0, end; begin < list.order.size(); begin = end) {
         end = begin + 1;
         while (end < list.order.size() && list.rows[list.order[end]] == list.rows[list.order[end - 1]] + 1) ++end;
@@ -68,7 +72,8 @@ void check_same_operator(lcl_operator A, std::initializer_list<lcl_field> fields
     for (const lcl_field field : fields) {
         if (field == nullptr) continue;
         if (field->A.get() != A) throw InvalidArgument("a field of another operator was given");
-        if (field->field.channels() != first->field.channels() || field->field.real() != first->field.real()) throw InvalidArgument("the fields differ in channels or precision");
+        if (field->field.channels() != first->field.channels() || field->field.real() != first->field.real())
+            throw InvalidArgument("the fields differ in channels or precision");
     }
 }
 
@@ -87,7 +92,8 @@ lcl_status lcl_field_create(lcl_operator A, int32_t channels, lcl_precision prec
     return guarded([&] {
         required(field, "field");
         if (channels < 1) throw InvalidArgument("channels is " + std::to_string(channels) + ", it is at least 1");
-        if (precision < LCL_PRECISION_MIXED || precision > LCL_PRECISION_DOUBLE) throw InvalidArgument("precision is " + std::to_string(precision) + ", it goes from 0 to 2");
+        if (precision < LCL_PRECISION_MIXED || precision > LCL_PRECISION_DOUBLE)
+            throw InvalidArgument("precision is " + std::to_string(precision) + ", it goes from 0 to 2");
         Field values = required(A, "A")->system->A->make_field(channels, precision == LCL_PRECISION_DOUBLE ? Real::full : Real::single);
         values.fill_zero();
         *field = new lcl_field_s(A, std::move(values));
@@ -137,7 +143,8 @@ lcl_status lcl_field_match(lcl_field field, lcl_field of) {
     return guarded([&] {
         if (required(field, "field")->field.channels() != required(of, "of")->field.channels()) throw InvalidArgument("the fields differ in channels");
         const Transform& transform = transform_of(of, "to match");
-        if (field->transform && !same(*field->transform, transform)) throw InvalidArgument("the field holds values in another centre and scale already: match it before its first upload");
+        if (field->transform && !same(*field->transform, transform))
+            throw InvalidArgument("the field holds values in another centre and scale already: match it before its first upload");
         field->transform = transform;
         return LCL_OK;
     });
@@ -153,7 +160,8 @@ lcl_status lcl_field_read_vertices(lcl_field field, const int32_t* vertices, siz
             std::vector<double> rows((end - begin) * channels);
             inner.download(rows.data(), list.rows[list.order[begin]], static_cast<Index>(end - begin));
             for (std::size_t i = 0; i < rows.size(); ++i)
-                required(values, "values")[list.order[begin + i / channels] * channels + i % channels] = rows[i] / transform.scale[i % channels] + transform.centre[i % channels];
+                required(values, "values")[list.order[begin + i / channels] * channels + i % channels] =
+                    rows[i] / transform.scale[i % channels] + transform.centre[i % channels];
         });
         return LCL_OK;
     });
@@ -168,7 +176,8 @@ lcl_status lcl_field_write_vertices(lcl_field field, const int32_t* vertices, si
         for_each_stretch(list, [&](std::size_t begin, std::size_t end) {
             std::vector<double> rows((end - begin) * channels);
             for (std::size_t i = 0; i < rows.size(); ++i)
-                rows[i] = (required(values, "values")[list.order[begin + i / channels] * channels + i % channels] - transform.centre[i % channels]) * transform.scale[i % channels];
+                rows[i] = (required(values, "values")[list.order[begin + i / channels] * channels + i % channels] - transform.centre[i % channels]) *
+                          transform.scale[i % channels];
             inner.upload(rows.data(), list.rows[list.order[begin]], static_cast<Index>(end - begin));
         });
         return LCL_OK;
@@ -185,23 +194,27 @@ lcl_status lcl_operator_apply(lcl_operator A, lcl_field x, lcl_field y) {
     });
 }
 
-lcl_status lcl_operator_step(lcl_operator A, double a, double b, double c, lcl_field M, lcl_field x, lcl_field d, lcl_field y, int32_t first_block, int32_t block_count, double* residual) {
+lcl_status lcl_operator_step(lcl_operator A, double a, double b, double c, lcl_field M, lcl_field x, lcl_field d, lcl_field y, int32_t first_block,
+                             int32_t block_count, double* residual) {
     return guarded([&] {
         check_same_operator(required(A, "A"), {required(x, "x"), required(M, "M"), required(y, "y"), d});
         if (x == y || M == y) throw InvalidArgument("y is the same field as x or M");
         if (c != 0) required(d, "d");
         const Transform& transform = transform_of(x, "x");
         for (const lcl_field field : {M, c != 0 ? d : M})
-            if (!same(transform_of(field, field == M ? "M" : "d"), transform)) throw InvalidArgument("M, x and d differ in centre and scale: use lcl_field_match before uploading");
+            if (!same(transform_of(field, field == M ? "M" : "d"), transform))
+                throw InvalidArgument("M, x and d differ in centre and scale: use lcl_field_match before uploading");
         const Plan& plan = A->system->plan();
         const Index blocks = static_cast<Index>(plan.blocks.size());
         const std::int64_t end = block_count < 0 ? blocks : std::int64_t{first_block} + block_count;
         if (first_block < 0 || first_block > blocks || end > blocks)
-            throw InvalidArgument("blocks " + std::to_string(first_block) + " to " + std::to_string(end) + " were asked for, the operator has " + std::to_string(blocks));
+            throw InvalidArgument("blocks " + std::to_string(first_block) + " to " + std::to_string(end) + " were asked for, the operator has " +
+                                  std::to_string(blocks));
         block_count = static_cast<int32_t>(end) - first_block;
         const Part part{0, 0, first_block, block_count};
         Transform result = transform;
-        if (!is_affine(a, c)) for (double& centre : result.centre) centre *= a + c;  // 0 for a residual
+        if (!is_affine(a, c))
+            for (double& centre : result.centre) centre *= a + c;  // 0 for a residual
         set_transform(y, result, block_count == blocks && plan.row_count == plan.vertex_count);
         A->system->A->sweep({a, b, 0, c}, M->field, x->field, c != 0 ? &d->field : nullptr, y->field, part);
         if (residual != nullptr) *residual = A->system->A->norms(x->field, part).position / transform.scale[0];

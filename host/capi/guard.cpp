@@ -75,7 +75,8 @@ size_t lcl_last_error_faces(int32_t* faces, size_t capacity) {
 }
 
 const char* lcl_status_string(lcl_status status) {
-#define LCL_NAME(name) case name: return #name;
+#define LCL_NAME(name) \
+    case name: return #name;
     switch (status) {
         LCL_NAME(LCL_OK)
         LCL_NAME(LCL_ERROR_INVALID_ARGUMENT)

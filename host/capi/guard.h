@@ -22,7 +22,8 @@ LastError& last_error();
 lcl_status current_failure() noexcept;
 
 /// Runs body; no exception leaves it.
-template <class Body> lcl_status guarded(const Body& body) noexcept {
+template <class Body>
+lcl_status guarded(const Body& body) noexcept {
     try {
         return body();
     } catch (...) {
@@ -31,13 +32,15 @@ template <class Body> lcl_status guarded(const Body& body) noexcept {
 }
 
 /// Fails unless the pointer is there: "mesh is NULL".
-template <class T> T* required(T* pointer, const char* name) {
+template <class T>
+T* required(T* pointer, const char* name) {
     if (pointer == nullptr) throw InvalidArgument(std::string(name) + " is NULL");
     return pointer;
 }
 
 /// The caller's options over the defaults; fields that the caller's header did not have keep theirs.
-template <class Options> Options options_or(const Options* given, const Options& defaults, const char* name) {
+template <class Options>
+Options options_or(const Options* given, const Options& defaults, const char* name) {
     if (given == nullptr) return defaults;
     if (given->struct_size < 2 * sizeof(uint32_t)) throw InvalidArgument(std::string(name) + ".struct_size is not set: start from its _INIT value");
     Options options = defaults;
@@ -46,14 +49,17 @@ template <class Options> Options options_or(const Options* given, const Options&
 }
 
 /// Fills a caller's struct as far as its header knew it.
-template <class Result> void give(Result* out, Result value, const char* name) {
-    if (required(out, name)->struct_size < 2 * sizeof(uint32_t)) throw InvalidArgument(std::string(name) + ".struct_size is not set: start from its _INIT value");
+template <class Result>
+void give(Result* out, Result value, const char* name) {
+    if (required(out, name)->struct_size < 2 * sizeof(uint32_t))
+        throw InvalidArgument(std::string(name) + ".struct_size is not set: start from its _INIT value");
     value.struct_size = out->struct_size;
     std::memcpy(static_cast<void*>(out), &value, std::min<std::size_t>(out->struct_size, sizeof value));
 }
 
 /// Copies text into a char array of a struct, cut to fit.
-template <std::size_t size> void copy_text(char (&to)[size], const std::string& text) {
+template <std::size_t size>
+void copy_text(char (&to)[size], const std::string& text) {
     const std::size_t count = std::min(text.size(), size - 1);
     std::memcpy(to, text.data(), count);
     to[count] = '\0';

@@ -21,20 +21,27 @@ namespace lcl {
 struct Counted {
     std::atomic<int> references{1};
 };
-template <class Handle> Handle* retain(Handle* handle) {
+template <class Handle>
+Handle* retain(Handle* handle) {
     if (handle != nullptr) handle->references.fetch_add(1, std::memory_order_relaxed);
     return handle;
 }
-template <class Handle> void release(Handle* handle) {
+template <class Handle>
+void release(Handle* handle) {
     if (handle != nullptr && handle->references.fetch_sub(1, std::memory_order_acq_rel) == 1) delete handle;
 }
 
 /// A reference that drops itself.
-template <class Handle> struct Releaser {
+template <class Handle>
+struct Releaser {
     void operator()(Handle* handle) const { release(handle); }
 };
-template <class Handle> using Reference = std::unique_ptr<Handle, Releaser<Handle>>;
-template <class Handle> Reference<Handle> share(Handle* handle) { return Reference<Handle>(retain(handle)); }
+template <class Handle>
+using Reference = std::unique_ptr<Handle, Releaser<Handle>>;
+template <class Handle>
+Reference<Handle> share(Handle* handle) {
+    return Reference<Handle>(retain(handle));
+}
 
 }  // namespace lcl
 
@@ -51,9 +58,9 @@ struct lcl_context_s : lcl::Counted {
 
 struct lcl_mesh_s : lcl::Counted {
     lcl::MeshFile file;
-    lcl::FeatureOptions feature_options;           // the file's tags and what callers added; boundary resolved by boundary_rule()
+    lcl::FeatureOptions feature_options;  // the file's tags and what callers added; boundary resolved by boundary_rule()
     lcl_boundary boundary = LCL_BOUNDARY_DEFAULT;
-    std::vector<lcl::SurfaceLocation> locations;   // of a refined mesh
+    std::vector<lcl::SurfaceLocation> locations;  // of a refined mesh
     std::map<lcl_note, std::vector<std::string>> notes;
 
     /// Topology and features of a sound mesh, built once; BadInput with the reason if it is not sound, or if the file had a tag that is refused.

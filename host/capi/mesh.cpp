@@ -23,7 +23,9 @@ void lcl_mesh_s::refuse_tags(const Topology& topology) const {
     if (!file.tags.refused.empty()) throw BadInput(file.tags.refused);
     const bool no_rule = file.tags.interpolate_boundary == 0 && boundary == LCL_BOUNDARY_DEFAULT;
     if (no_rule && std::count(topology.twin.begin(), topology.twin.end(), -1) > 0)
-        throw BadInput("the file asks for `t interpolateboundary 0` (no surface along the boundary) on a mesh with a boundary, which is not offered: choose a boundary rule");
+        throw BadInput(
+            "the file asks for `t interpolateboundary 0` (no surface along the boundary) on a mesh with a boundary, which is not offered: choose a boundary "
+            "rule");
 }
 
 const Features& lcl_mesh_s::sound_features() {
@@ -93,7 +95,8 @@ FileFormat inner_format(lcl_format format) {
 std::vector<std::array<Index, 2>> crease_edges(const Topology& topology, const Features& features) {
     std::vector<std::array<Index, 2>> edges;
     for (Index e = 0; e < topology.edge_count; ++e)
-        if (features.edge_is_sharp[e] && !topology.is_boundary_edge(e)) edges.push_back({topology.origin(topology.edge_half_edge[e]), topology.destination(topology.edge_half_edge[e])});
+        if (features.edge_is_sharp[e] && !topology.is_boundary_edge(e))
+            edges.push_back({topology.origin(topology.edge_half_edge[e]), topology.destination(topology.edge_half_edge[e])});
     return edges;
 }
 
@@ -117,11 +120,15 @@ std::size_t point_stride(std::size_t stride, const char* name) {
     return stride == 0 ? 3 : stride;
 }
 
-template <class T> double value_at(const void* points, std::size_t place) { return static_cast<double>(static_cast<const T*>(points)[place]); }
+template <class T>
+double value_at(const void* points, std::size_t place) {
+    return static_cast<double>(static_cast<const T*>(points)[place]);
+}
 
 void copy_points(const lcl_mesh_data& data, std::vector<double>& positions) {
     const std::size_t stride = point_stride(data.point_stride, "data.point_stride");
-    if (data.point_type != LCL_TYPE_DOUBLE && data.point_type != LCL_TYPE_FLOAT) throw InvalidArgument("data.point_type is " + std::to_string(data.point_type) + ", it is 0 (double) or 1 (float)");
+    if (data.point_type != LCL_TYPE_DOUBLE && data.point_type != LCL_TYPE_FLOAT)
+        throw InvalidArgument("data.point_type is " + std::to_string(data.point_type) + ", it is 0 (double) or 1 (float)");
     const auto read = data.point_type == LCL_TYPE_FLOAT ? &value_at<float> : &value_at<double>;
     positions.resize(static_cast<std::size_t>(data.vertex_count) * 3);
     for (std::size_t i = 0; i < positions.size(); ++i) positions[i] = read(data.points, i / 3 * stride + i % 3);
@@ -154,7 +161,10 @@ VertexProperty* property_at(lcl_mesh mesh, int32_t index) {
 bool integer_range(const std::string& type, double& low, double& high) {
     const auto is = [&](const char* name, const char* sized) { return type == name || type == sized; };
     const bool is_unsigned = type.rfind("u", 0) == 0;
-    const int bits = is("char", "int8") || is("uchar", "uint8") ? 8 : is("short", "int16") || is("ushort", "uint16") ? 16 : is("int", "int32") || is("uint", "uint32") ? 32 : 0;
+    const int bits = is("char", "int8") || is("uchar", "uint8")       ? 8
+                     : is("short", "int16") || is("ushort", "uint16") ? 16
+                     : is("int", "int32") || is("uint", "uint32")     ? 32
+                                                                      : 0;
     low = is_unsigned ? 0 : -std::ldexp(1, bits - 1);
     high = std::ldexp(1, is_unsigned ? bits : bits - 1) - 1;
     return bits > 0;
@@ -171,7 +181,8 @@ bool widen(VertexProperty& property) {
 
 std::map<Index, Index> histogram(lcl_mesh_s& mesh, lcl_histogram which) {
     std::map<Index, Index> counts;
-    if (which != LCL_HISTOGRAM_FACE_DEGREES && which != LCL_HISTOGRAM_VALENCES) throw InvalidArgument("which is " + std::to_string(which) + ", it is 0 (face degrees) or 1 (valences)");
+    if (which != LCL_HISTOGRAM_FACE_DEGREES && which != LCL_HISTOGRAM_VALENCES)
+        throw InvalidArgument("which is " + std::to_string(which) + ", it is 0 (face degrees) or 1 (valences)");
     if (which == LCL_HISTOGRAM_FACE_DEGREES) {
         for (Index f = 0; f < mesh.file.mesh.face_count(); ++f) ++counts[mesh.file.mesh.degree(f)];
         return counts;
@@ -287,7 +298,8 @@ lcl_status lcl_mesh_get_points(lcl_mesh mesh, double* points, size_t stride) {
     return guarded([&] {
         const PolygonMesh& polygons = required(mesh, "mesh")->file.mesh;
         const std::size_t step = point_stride(stride, "stride");
-        for (Index v = 0; v < polygons.vertex_count; ++v) std::copy_n(&polygons.positions[3 * static_cast<std::size_t>(v)], 3, required(points, "points") + v * step);
+        for (Index v = 0; v < polygons.vertex_count; ++v)
+            std::copy_n(&polygons.positions[3 * static_cast<std::size_t>(v)], 3, required(points, "points") + v * step);
         return LCL_OK;
     });
 }
@@ -297,7 +309,8 @@ lcl_status lcl_mesh_set_points(lcl_mesh mesh, const double* points, size_t strid
         if (required(mesh, "mesh")->feature_options.crease_angle_degrees > 0) mesh->features();  // found on the points as they were
         PolygonMesh& polygons = mesh->file.mesh;
         const std::size_t step = point_stride(stride, "stride");
-        for (Index v = 0; v < polygons.vertex_count; ++v) std::copy_n(required(points, "points") + v * step, 3, &polygons.positions[3 * static_cast<std::size_t>(v)]);
+        for (Index v = 0; v < polygons.vertex_count; ++v)
+            std::copy_n(required(points, "points") + v * step, 3, &polygons.positions[3 * static_cast<std::size_t>(v)]);
         mesh->file.normals.clear();
         mesh->forget_positions();
         return LCL_OK;
@@ -317,8 +330,10 @@ lcl_status lcl_mesh_add_features(lcl_mesh mesh, const lcl_features* features) {
     return guarded([&] {
         required(mesh, "mesh");
         const lcl_features given = options_or(required(features, "features"), LCL_FEATURES_INIT, "features");
-        if (given.boundary < LCL_BOUNDARY_DEFAULT || given.boundary > LCL_BOUNDARY_FIXED) throw InvalidArgument("features.boundary is " + std::to_string(given.boundary) + ", it goes from 0 to 3");
-        if (std::isnan(given.crease_angle_degrees) || given.crease_angle_degrees > 180) throw InvalidArgument("features.crease_angle_degrees goes from 0 to 180");
+        if (given.boundary < LCL_BOUNDARY_DEFAULT || given.boundary > LCL_BOUNDARY_FIXED)
+            throw InvalidArgument("features.boundary is " + std::to_string(given.boundary) + ", it goes from 0 to 3");
+        if (std::isnan(given.crease_angle_degrees) || given.crease_angle_degrees > 180)
+            throw InvalidArgument("features.crease_angle_degrees goes from 0 to 180");
         if (given.crease_count > 0) required(given.creases, "features.creases");
         if (given.corner_count > 0) required(given.corners, "features.corners");
         FeatureOptions& own = mesh->feature_options;
@@ -383,19 +398,26 @@ lcl_status lcl_mesh_get_histogram(lcl_mesh mesh, lcl_histogram which, int32_t* k
 }
 
 lcl_status lcl_mesh_validate(lcl_mesh mesh) {
-    return guarded([&] { required(mesh, "mesh")->features(); return LCL_OK; });
+    return guarded([&] {
+        required(mesh, "mesh")->features();
+        return LCL_OK;
+    });
 }
 
 int32_t lcl_mesh_defect_count(lcl_mesh mesh) {
     int32_t count = 0;
-    guarded([&] { count = static_cast<int32_t>(required(mesh, "mesh")->defects().size()); return LCL_OK; });
+    guarded([&] {
+        count = static_cast<int32_t>(required(mesh, "mesh")->defects().size());
+        return LCL_OK;
+    });
     return count;
 }
 
 lcl_status lcl_mesh_get_defect(lcl_mesh mesh, int32_t index, lcl_defect* defect) {
     return guarded([&] {
         const std::vector<Defect>& all = required(mesh, "mesh")->defects();
-        if (index < 0 || index >= static_cast<int32_t>(all.size())) throw InvalidArgument("defect " + std::to_string(index) + " of " + std::to_string(all.size()) + " was asked for");
+        if (index < 0 || index >= static_cast<int32_t>(all.size()))
+            throw InvalidArgument("defect " + std::to_string(index) + " of " + std::to_string(all.size()) + " was asked for");
         lcl_defect out = LCL_DEFECT_INIT;
         out.kind = defect_name(all[index].kind);
         out.message = all[index].message.c_str();
@@ -422,7 +444,8 @@ int32_t lcl_mesh_property_is_colour(lcl_mesh mesh, int32_t index) {
 lcl_status lcl_mesh_get_property(lcl_mesh mesh, int32_t index, double* values) {
     return guarded([&] {
         const VertexProperty* property = property_at(required(mesh, "mesh"), index);
-        if (property == nullptr) throw InvalidArgument("property " + std::to_string(index) + " was asked for, the mesh has " + std::to_string(mesh->file.properties.size()));
+        if (property == nullptr)
+            throw InvalidArgument("property " + std::to_string(index) + " was asked for, the mesh has " + std::to_string(mesh->file.properties.size()));
         if (!property->values.empty()) std::copy(property->values.begin(), property->values.end(), required(values, "values"));
         return LCL_OK;
     });
@@ -436,7 +459,8 @@ lcl_status lcl_mesh_set_property(lcl_mesh mesh, const char* name, const double* 
         auto found = std::find_if(properties.begin(), properties.end(), [&](const VertexProperty& p) { return p.name == wanted; });
         if (found == properties.end()) found = properties.insert(properties.end(), {wanted, VertexProperty::Kind::scalar, "double", {}});
         found->values.assign(values, values + mesh->file.mesh.vertex_count);
-        if (widen(*found)) mesh->notes[LCL_NOTE_WARNING].push_back("the property '" + wanted + "' holds values now that its integer type cannot: it is kept as double");
+        if (widen(*found))
+            mesh->notes[LCL_NOTE_WARNING].push_back("the property '" + wanted + "' holds values now that its integer type cannot: it is kept as double");
         return LCL_OK;
     });
 }

@@ -20,15 +20,20 @@ CallerRows checked(lcl_field field, cl_mem memory, std::size_t offset, lcl_type 
     const Field& inner = required(field, "field")->field;
     required(memory, "memory");
     if (type != LCL_TYPE_DOUBLE && type != LCL_TYPE_FLOAT) throw InvalidArgument("type is " + std::to_string(type) + ", it is 0 (double) or 1 (float)");
-    if (type == LCL_TYPE_DOUBLE && !inner.context().device().has_double) throw Unsupported("the buffer holds doubles, and " + inner.context().device().name + " has no double precision: use floats");
+    if (type == LCL_TYPE_DOUBLE && !inner.context().device().has_double)
+        throw Unsupported("the buffer holds doubles, and " + inner.context().device().name + " has no double precision: use floats");
     CallerRows rows{memory, offset, type, stride == 0 ? inner.channels() : stride};
-    if (rows.stride < static_cast<std::size_t>(inner.channels())) throw InvalidArgument("stride is " + std::to_string(stride) + ", less than the " + std::to_string(inner.channels()) + " channels");
-    if (offset % rows.value_bytes() != 0) throw InvalidArgument("offset is " + std::to_string(offset) + " bytes, not a multiple of a value's " + std::to_string(rows.value_bytes()));
+    if (rows.stride < static_cast<std::size_t>(inner.channels()))
+        throw InvalidArgument("stride is " + std::to_string(stride) + ", less than the " + std::to_string(inner.channels()) + " channels");
+    if (offset % rows.value_bytes() != 0)
+        throw InvalidArgument("offset is " + std::to_string(offset) + " bytes, not a multiple of a value's " + std::to_string(rows.value_bytes()));
     std::size_t size = 0;
     check(clGetMemObjectInfo(memory, CL_MEM_SIZE, sizeof size, &size, nullptr), "clGetMemObjectInfo", "looking at a caller's buffer");
-    const std::size_t room = offset > size ? 0 : (size - offset) / rows.value_bytes(), last_row = inner.rows() > 0 ? inner.rows() - 1 : 0, channels = inner.channels();
+    const std::size_t room = offset > size ? 0 : (size - offset) / rows.value_bytes(), last_row = inner.rows() > 0 ? inner.rows() - 1 : 0,
+                      channels = inner.channels();
     if (inner.rows() > 0 && (room < channels || (last_row > 0 && rows.stride > (room - channels) / last_row)))
-        throw InvalidArgument(std::to_string(inner.rows()) + " rows of stride " + std::to_string(rows.stride) + " from byte " + std::to_string(offset) + " do not fit into the buffer's " + std::to_string(size) + " bytes");
+        throw InvalidArgument(std::to_string(inner.rows()) + " rows of stride " + std::to_string(rows.stride) + " from byte " + std::to_string(offset) +
+                              " do not fit into the buffer's " + std::to_string(size) + " bytes");
     return rows;
 }
 
@@ -59,7 +64,9 @@ Buffer frame(const lcl_field_s& field, const ChannelBlock& block, bool as_double
     Buffer buffer(field.A->context->context, values.size() * sizeof(double), "centre and scale of a field");
     const void* const from = as_double ? static_cast<const void*>(values.data()) : narrow.data();
     // Beside the kernels' queue: that one may stand still until an event that the caller sets after this call.
-    field.field.context().write_async(buffer, 0, values.size() * (as_double ? sizeof(double) : sizeof(float)), from, {}, "uploading the centre and scale of a field").wait();
+    field.field.context()
+        .write_async(buffer, 0, values.size() * (as_double ? sizeof(double) : sizeof(float)), from, {}, "uploading the centre and scale of a field")
+        .wait();
     return buffer;
 }
 
@@ -74,10 +81,12 @@ void transfer(lcl_field_s& field, const CallerRows& rows, Direction direction) {
     for (std::size_t b = 0; b < inner.blocks().size(); ++b) {
         const ChannelBlock& block = inner.blocks()[b];
         const Buffer caller(field.A->context->context, rows.memory, 0, 0);
-        const std::string options = kernel_options(context, inner.real(), block.width, 1) + " -D LCL_SOURCE=" + (rows.type == LCL_TYPE_FLOAT ? "float" : "double");
-        launch(context, context.kernel("transfer", imports ? "lcl_import_points" : "lcl_export_points", options), {static_cast<std::size_t>(inner.rows()), 0}, static_cast<cl_uint>(inner.rows()), static_cast<cl_ulong>(stride),
-               static_cast<cl_ulong>(offset), static_cast<cl_uint>(block.first), static_cast<cl_uint>(block.count), field.A->system->A->vertex_order(), frame(field, block, as_double),
-               imports ? caller : inner.buffer(b), imports ? inner.buffer(b) : caller);
+        const std::string options =
+            kernel_options(context, inner.real(), block.width, 1) + " -D LCL_SOURCE=" + (rows.type == LCL_TYPE_FLOAT ? "float" : "double");
+        launch(context, context.kernel("transfer", imports ? "lcl_import_points" : "lcl_export_points", options), {static_cast<std::size_t>(inner.rows()), 0},
+               static_cast<cl_uint>(inner.rows()), static_cast<cl_ulong>(stride), static_cast<cl_ulong>(offset), static_cast<cl_uint>(block.first),
+               static_cast<cl_uint>(block.count), field.A->system->A->vertex_order(), frame(field, block, as_double), imports ? caller : inner.buffer(b),
+               imports ? inner.buffer(b) : caller);
     }
 }
 
@@ -115,14 +124,21 @@ lcl_status lcl_context_create_from_cl(cl_context context, cl_command_queue queue
 cl_command_queue lcl_context_get_queue(lcl_context context) { return context ? context->context->queue() : nullptr; }
 
 lcl_status lcl_context_wait_for(lcl_context context, cl_uint event_count, const cl_event* events) {
-    return guarded([&] { wait_for_events(*required(context, "context")->context, event_count, events); return LCL_OK; });
+    return guarded([&] {
+        wait_for_events(*required(context, "context")->context, event_count, events);
+        return LCL_OK;
+    });
 }
 
 lcl_status lcl_context_marker(lcl_context context, cl_event* event) {
-    return guarded([&] { give_marker(*required(context, "context")->context, required(event, "event")); return LCL_OK; });
+    return guarded([&] {
+        give_marker(*required(context, "context")->context, required(event, "event"));
+        return LCL_OK;
+    });
 }
 
-lcl_status lcl_field_import_cl(lcl_field field, cl_mem memory, size_t offset, lcl_type type, size_t stride, cl_uint event_count, const cl_event* events, cl_event* done) {
+lcl_status lcl_field_import_cl(lcl_field field, cl_mem memory, size_t offset, lcl_type type, size_t stride, cl_uint event_count, const cl_event* events,
+                               cl_event* done) {
     return guarded([&] {
         const CallerRows rows = checked(field, memory, offset, type, stride);
         field->A->system->A->vertex_order();  // its first use uploads it, and that must not stand behind the events
@@ -134,7 +150,8 @@ lcl_status lcl_field_import_cl(lcl_field field, cl_mem memory, size_t offset, lc
     });
 }
 
-lcl_status lcl_field_export_cl(lcl_field field, cl_mem memory, size_t offset, lcl_type type, size_t stride, cl_uint event_count, const cl_event* events, cl_event* done) {
+lcl_status lcl_field_export_cl(lcl_field field, cl_mem memory, size_t offset, lcl_type type, size_t stride, cl_uint event_count, const cl_event* events,
+                               cl_event* done) {
     return guarded([&] {
         const CallerRows rows = checked(field, memory, offset, type, stride);
         if (!field->transform) throw InvalidArgument("the field holds no values yet");

@@ -39,13 +39,15 @@ bool wants_other_alpha(LimitSystem& system) {
 SchemeOptions scheme_options(lcl_mesh_s& mesh, const lcl_scheme_options& options) {
     SchemeOptions out;
     out.scheme = resolve(mesh, options);
-    if (options.mask != LCL_MASK_CATMULL && options.mask != LCL_MASK_CLASSIC) throw InvalidArgument("options.mask is " + std::to_string(options.mask) + ", it is 0 or 1");
+    if (options.mask != LCL_MASK_CATMULL && options.mask != LCL_MASK_CLASSIC)
+        throw InvalidArgument("options.mask is " + std::to_string(options.mask) + ", it is 0 or 1");
     out.mask = options.mask == LCL_MASK_CLASSIC ? DooSabinMask::classic : DooSabinMask::catmull;
     check_ratio(options.alpha, "alpha");
     check_ratio(options.lambda, "lambda");
     const bool two_phase = options.lambda != 0 || options.lambda_per_vertex != nullptr;
     if (out.scheme != Scheme::catmull_clark && (options.alpha != 0 || two_phase))
-        throw InvalidArgument(std::string("alpha and lambda belong to Catmull-Clark, and the scheme is ") + scheme_name(out.scheme) + ": leave them out or set the scheme");
+        throw InvalidArgument(std::string("alpha and lambda belong to Catmull-Clark, and the scheme is ") + scheme_name(out.scheme) +
+                              ": leave them out or set the scheme");
     out.alpha = options.alpha;
     out.lambda = options.lambda;
     if (options.lambda_per_vertex == nullptr) return out;
@@ -60,7 +62,8 @@ void require_finite(const double* values, std::size_t stride, int channels, std:
             const double value = values[v * stride + c];
             if (std::isfinite(value)) continue;
             const std::string shown = std::isnan(value) ? "nan" : value > 0 ? "inf" : "-inf";
-            throw BadInput(std::string(name) + " of vertex " + std::to_string(v) + " is " + shown + " in channel " + std::to_string(c) + ": correct the value", {{static_cast<Index>(v)}, {}});
+            throw BadInput(std::string(name) + " of vertex " + std::to_string(v) + " is " + shown + " in channel " + std::to_string(c) + ": correct the value",
+                           {{static_cast<Index>(v)}, {}});
         }
 }
 
@@ -70,7 +73,8 @@ std::vector<std::uint8_t> vertex_marks(const int32_t* vertices, std::size_t coun
     std::vector<std::uint8_t> marks(vertex_count, 0);
     for (std::size_t i = 0; i < count; ++i) {
         if (vertices[i] < 0 || vertices[i] >= vertex_count)
-            throw InvalidArgument(std::string(name) + " names vertex " + std::to_string(vertices[i]) + ", the mesh has " + std::to_string(vertex_count), {{vertices[i]}, {}});
+            throw InvalidArgument(std::string(name) + " names vertex " + std::to_string(vertices[i]) + ", the mesh has " + std::to_string(vertex_count),
+                                  {{vertices[i]}, {}});
         marks[vertices[i]] = 1;
     }
     return marks;
@@ -127,7 +131,8 @@ lcl_status lcl_operator_get_scheme(lcl_operator A, lcl_scheme_options* options) 
 lcl_status lcl_operator_get_row(lcl_operator A, int32_t vertex, int32_t* columns, double* weights, size_t capacity, size_t* size) {
     return guarded([&] {
         const Plan& plan = required(A, "A")->system->plan();
-        if (vertex < 0 || vertex >= plan.vertex_count) throw InvalidArgument("row " + std::to_string(vertex) + " was asked for, the operator has " + std::to_string(plan.vertex_count) + " vertices");
+        if (vertex < 0 || vertex >= plan.vertex_count)
+            throw InvalidArgument("row " + std::to_string(vertex) + " was asked for, the operator has " + std::to_string(plan.vertex_count) + " vertices");
         const Index row = plan.row_of_vertex[vertex];
         if (row >= plan.row_count) throw InvalidArgument("vertex " + std::to_string(vertex) + " is a ghost: it has no row in this part");
         const LimitRow entries = plan_row(plan, run_of_row(plan, row), row);

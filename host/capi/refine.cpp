@@ -13,7 +13,8 @@ namespace {
 /// Colours and scalar properties are refined as channels; texture coordinates are not.
 std::vector<VertexProperty> refined_properties(const std::vector<VertexProperty>& properties, const Stencils& stencils) {
     std::vector<VertexProperty> out;
-    for (const VertexProperty& property : properties) out.push_back({property.name, property.kind, property.type, apply_stencils(stencils, property.values, 1)});
+    for (const VertexProperty& property : properties)
+        out.push_back({property.name, property.kind, property.type, apply_stencils(stencils, property.values, 1)});
     return out;
 }
 
@@ -43,7 +44,8 @@ lcl_status lcl_mesh_refine(lcl_mesh mesh, const lcl_scheme_options* scheme, cons
     return guarded([&] {
         required(refined, "refined");
         required(mesh, "mesh");
-        const int levels = std::max(0, options_or(options, LCL_REFINE_OPTIONS_INIT, "options").levels == 0 ? 1 : options_or(options, LCL_REFINE_OPTIONS_INIT, "options").levels);
+        const int levels = std::max(
+            0, options_or(options, LCL_REFINE_OPTIONS_INIT, "options").levels == 0 ? 1 : options_or(options, LCL_REFINE_OPTIONS_INIT, "options").levels);
         SchemeOptions rules = scheme_options(*mesh, options_or(scheme, LCL_SCHEME_OPTIONS_INIT, "scheme"));
         const Objection objection = scheme_objection(mesh->topology(), rules);
         if (!objection.message.empty()) throw BadInput(objection.message, {objection.vertices, objection.faces});

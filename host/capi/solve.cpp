@@ -8,20 +8,24 @@ using namespace lcl;
 namespace {
 
 Precision inner_precision(lcl_precision precision) {
-    if (precision < LCL_PRECISION_MIXED || precision > LCL_PRECISION_DOUBLE) throw InvalidArgument("precision is " + std::to_string(precision) + ", it goes from 0 to 2");
+    if (precision < LCL_PRECISION_MIXED || precision > LCL_PRECISION_DOUBLE)
+        throw InvalidArgument("precision is " + std::to_string(precision) + ", it goes from 0 to 2");
     return static_cast<Precision>(precision);
 }
 
 void check_channels(int32_t channels, std::size_t stride, const char* name) {
     if (channels < 1) throw InvalidArgument("channels is " + std::to_string(channels) + ", it is at least 1");
-    if (stride < static_cast<std::size_t>(channels)) throw InvalidArgument(std::string(name) + " is " + std::to_string(stride) + ", less than the " + std::to_string(channels) + " channels");
+    if (stride < static_cast<std::size_t>(channels))
+        throw InvalidArgument(std::string(name) + " is " + std::to_string(stride) + ", less than the " + std::to_string(channels) + " channels");
 }
 
 SolveOptions inner_options(const lcl_solve_options& given) {
-    if (given.solver < LCL_SOLVER_AUTO || given.solver > LCL_SOLVER_CG) throw InvalidArgument("options.solver is " + std::to_string(given.solver) + ", it goes from 0 to 7");
+    if (given.solver < LCL_SOLVER_AUTO || given.solver > LCL_SOLVER_CG)
+        throw InvalidArgument("options.solver is " + std::to_string(given.solver) + ", it goes from 0 to 7");
     if (!(given.tolerance >= 0)) throw InvalidArgument("options.tolerance is " + std::to_string(given.tolerance) + ", it is above 0");
     if (given.max_iterations < 0 || given.exact_sweeps < 0) throw InvalidArgument("options has a negative number of iterations");
-    if (!(given.weight >= 0 && given.weight < 2)) throw InvalidArgument("options.weight is " + std::to_string(given.weight) + ", W-PIA takes weights above 0 and below 2");
+    if (!(given.weight >= 0 && given.weight < 2))
+        throw InvalidArgument("options.weight is " + std::to_string(given.weight) + ", W-PIA takes weights above 0 and below 2");
     if (!(given.diagonal >= 0)) throw InvalidArgument("options.diagonal is below 0");
     SolveOptions options;
     options.solver = static_cast<Solver>(given.solver);
@@ -34,7 +38,9 @@ SolveOptions inner_options(const lcl_solve_options& given) {
     options.certify = given.certify != 0;
     options.diagonal = given.diagonal;
     if (given.progress != nullptr)
-        options.progress = [given](int iteration, double residual, double target) { return given.progress(given.progress_user, iteration, residual, target) != 0; };
+        options.progress = [given](int iteration, double residual, double target) {
+            return given.progress(given.progress_user, iteration, residual, target) != 0;
+        };
     return options;
 }
 
@@ -69,7 +75,8 @@ lcl_status conclude(const SolveReport& inner, const lcl_solve_options& options, 
     }
 }
 
-lcl_status interpolate(lcl_operator A, const double* M, std::size_t stride, int32_t channels, const lcl_solve_options& given, double* P, std::size_t P_stride, lcl_solve_report* report) {
+lcl_status interpolate(lcl_operator A, const double* M, std::size_t stride, int32_t channels, const lcl_solve_options& given, double* P, std::size_t P_stride,
+                       lcl_solve_report* report) {
     LimitSystem& system = *required(A, "A")->system;
     if (stride == 0) stride = channels;
     if (P_stride == 0) P_stride = channels;
@@ -98,7 +105,8 @@ lcl_status lcl_limit_points(lcl_operator A, const double* points, size_t stride,
     });
 }
 
-lcl_status lcl_interpolate(lcl_operator A, const double* M, size_t stride, int32_t channels, const lcl_solve_options* options, double* P, size_t P_stride, lcl_solve_report* report) {
+lcl_status lcl_interpolate(lcl_operator A, const double* M, size_t stride, int32_t channels, const lcl_solve_options* options, double* P, size_t P_stride,
+                           lcl_solve_report* report) {
     return guarded([&] { return interpolate(A, M, stride, channels, options_or(options, LCL_SOLVE_OPTIONS_INIT, "options"), P, P_stride, report); });
 }
 
@@ -115,18 +123,18 @@ lcl_status lcl_interpolate_mesh(lcl_operator A, lcl_mesh mesh, const lcl_solve_o
     });
 }
 
-lcl_status lcl_interpolate_async(lcl_operator A, const double* M, size_t stride, int32_t channels, const lcl_solve_options* options, double* P, size_t P_stride, lcl_solve_report* report,
-                                 lcl_task* task) {
+lcl_status lcl_interpolate_async(lcl_operator A, const double* M, size_t stride, int32_t channels, const lcl_solve_options* options, double* P, size_t P_stride,
+                                 lcl_solve_report* report, lcl_task* task) {
     return guarded([&] {
         required(task, "task");
         const lcl_solve_options given = options_or(options, LCL_SOLVE_OPTIONS_INIT, "options");
         auto handle = std::make_unique<lcl_task_s>();
         handle->A = share(required(A, "A"));
         handle->result = std::async(std::launch::async, [=] {
-            last_error() = {};
-            const lcl_status status = guarded([&] { return interpolate(A, M, stride, channels, given, P, P_stride, report); });
-            return lcl_task_s::Result{status, last_error()};
-        }).share();
+                             last_error() = {};
+                             const lcl_status status = guarded([&] { return interpolate(A, M, stride, channels, given, P, P_stride, report); });
+                             return lcl_task_s::Result{status, last_error()};
+                         }).share();
         *task = handle.release();
         return LCL_OK;
     });
@@ -154,7 +162,8 @@ lcl_status lcl_interpolate_field(lcl_operator A, lcl_field M, const lcl_solve_op
         options_or(report, LCL_SOLVE_REPORT_INIT, "report");  // refuses one without a size before any work
         SolveOptions inner = inner_options(given);
         if (M->field.real() == Real::full) inner.precision = Precision::full;
-        else if (inner.precision == Precision::full) throw InvalidArgument("the fields hold floats, and double precision was asked for: create them with LCL_PRECISION_DOUBLE");
+        else if (inner.precision == Precision::full)
+            throw InvalidArgument("the fields hold floats, and double precision was asked for: create them with LCL_PRECISION_DOUBLE");
         if (given.warm_start == 0) P->transform = M->transform;
         else if (!P->transform || P->transform->centre != M->transform->centre || P->transform->scale != M->transform->scale)
             throw InvalidArgument("P, the start, is kept in another centre and scale than M: use lcl_field_match before uploading it");

@@ -45,10 +45,8 @@ std::string device_table(const std::vector<lcl_device_info>& devices) {
 
 void run_devices(Job& job) {
     job.report.devices.emplace();
-    if (lcl_device_count() > 0 && job.options.device.empty())
-        job.report.devices = all_devices();
-    else
-        job.report.devices->push_back(chosen_device(job.options));  // with no device at all this fails, with the ways to install one
+    if (lcl_device_count() > 0 && job.options.device.empty()) job.report.devices = all_devices();
+    else job.report.devices->push_back(chosen_device(job.options));  // with no device at all this fails, with the ways to install one
     if (job.options.report != "-") job.terminal.result(device_table(*job.report.devices));
 }
 

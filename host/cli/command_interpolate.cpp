@@ -13,7 +13,6 @@ namespace lcl::cli {
 
 namespace {
 
-
 constexpr int most_residuals = 1 << 22;  // a longer history is cut: 32 MiB, whatever --max-iter says
 
 /// What the progress line needs between two calls.
@@ -138,7 +137,9 @@ void say_solve(Job& job, std::size_t further_channels) {
 void warn_if_all_fixed(Job& job) {
     const lcl_mesh_info& info = job.report.mesh->info;
     if (info.corners + info.isolated_vertices < info.vertices) return;
-    warn(job, "every vertex is a corner or isolated, so the mesh is its own control mesh: if its faces should hang together, weld vertices at equal positions first");
+    warn(
+        job,
+        "every vertex is a corner or isolated, so the mesh is its own control mesh: if its faces should hang together, weld vertices at equal positions first");
 }
 
 }  // namespace

@@ -54,10 +54,8 @@ void append_location(std::string& text, std::size_t vertex, std::int32_t face, s
     text += std::to_string(vertex) + "," + std::to_string(face) + "," + std::to_string(face < 0 ? -1 : corner);
     for (int axis = 0; axis < 2; ++axis) {
         text += ",";
-        if (face < 0)
-            text += "nan";
-        else
-            append(text, uv[axis]);
+        if (face < 0) text += "nan";
+        else append(text, uv[axis]);
     }
     text += "\n";
 }

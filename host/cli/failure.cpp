@@ -7,53 +7,37 @@ namespace {
 
 const char* status_of_exit_code(int exit_code) {
     switch (exit_code) {
-        case exit_ok:
-            return "ok";
-        case exit_bad_input:
-            return "bad-input";
-        case exit_interrupted:
-            return "cancelled";
-        default:
-            return "error";
+        case exit_ok: return "ok";
+        case exit_bad_input: return "bad-input";
+        case exit_interrupted: return "cancelled";
+        default: return "error";
     }
 }
 
 int exit_code_of(lcl_status status) {
     switch (status) {
-        case LCL_OK:
-            return exit_ok;
-        case LCL_ERROR_INVALID_ARGUMENT:
-            return exit_usage;
+        case LCL_OK: return exit_ok;
+        case LCL_ERROR_INVALID_ARGUMENT: return exit_usage;
         case LCL_ERROR_BAD_INPUT:
         case LCL_ERROR_FILE:
-        case LCL_ERROR_UNSUPPORTED:
-            return exit_bad_input;  // a device without doubles is caught when the device is opened, so this is about the mesh
+        case LCL_ERROR_UNSUPPORTED: return exit_bad_input;  // a device without doubles is caught when the device is opened, so this is about the mesh
         case LCL_ERROR_SINGULAR:
         case LCL_ERROR_INDEFINITE:
-        case LCL_ERROR_NOT_CONVERGED:
-            return exit_no_result;
+        case LCL_ERROR_NOT_CONVERGED: return exit_no_result;
         case LCL_ERROR_NO_DEVICE:
-        case LCL_ERROR_MEMORY:
-            return exit_device;
-        case LCL_ERROR_CANCELLED:
-            return exit_interrupted;
-        default:
-            return status < 0 && status > -1000 ? exit_device : exit_error;  // OpenCL's own codes are above -1000
+        case LCL_ERROR_MEMORY: return exit_device;
+        case LCL_ERROR_CANCELLED: return exit_interrupted;
+        default: return status < 0 && status > -1000 ? exit_device : exit_error;  // OpenCL's own codes are above -1000
     }
 }
 
 std::string status_name(lcl_status status) {
     switch (status) {
-        case LCL_ERROR_SINGULAR:
-            return "singular";
-        case LCL_ERROR_INDEFINITE:
-            return "indefinite";
-        case LCL_ERROR_NOT_CONVERGED:
-            return "not-converged";
-        case LCL_ERROR_NO_DEVICE:
-            return "no-device";
-        default:
-            return status_of_exit_code(exit_code_of(status));
+        case LCL_ERROR_SINGULAR: return "singular";
+        case LCL_ERROR_INDEFINITE: return "indefinite";
+        case LCL_ERROR_NOT_CONVERGED: return "not-converged";
+        case LCL_ERROR_NO_DEVICE: return "no-device";
+        default: return status_of_exit_code(exit_code_of(status));
     }
 }
 

@@ -18,10 +18,8 @@ namespace {
 
 void log_to_terminal(void* user, std::int32_t level, const char* message) {
     Job& job = *static_cast<Job*>(user);
-    if (level <= LCL_LOG_WARNING)
-        warn(job, message);
-    else
-        job.terminal.log(message);
+    if (level <= LCL_LOG_WARNING) warn(job, message);
+    else job.terminal.log(message);
 }
 
 /// Standard input is read here: a pipe may let wait for ever, and Ctrl-C has to end that.

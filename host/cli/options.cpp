@@ -84,10 +84,8 @@ void set_alpha(Options& options, const std::string& text) {
 void set_lambda(Options& options, const std::string& text) {
     const std::optional<double> lambda = to_number(text);
     if (lambda && !is_fraction(*lambda)) throw CLI::ValidationError("--lambda", "'" + text + "' is not between 0 and 1");
-    if (lambda)
-        options.lambda = *lambda;
-    else
-        options.lambda_file = text;
+    if (lambda) options.lambda = *lambda;
+    else options.lambda_file = text;
 }
 
 CLI::Validator positive_number() {

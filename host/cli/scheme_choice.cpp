@@ -68,14 +68,10 @@ void note_scheme(Job& job, const lcl_scheme_options& scheme) {
     job.report.scheme = scheme_name(scheme.scheme);
     if (scheme.scheme == LCL_SCHEME_DOO_SABIN) job.report.set_parameter("mask", std::string(mask_name(scheme.mask)));
     if (scheme.scheme != LCL_SCHEME_CATMULL_CLARK) return;
-    if (scheme.alpha_auto)
-        job.report.set_parameter("alpha", std::string("auto"));
-    else
-        job.report.set_parameter("alpha", scheme.alpha);
-    if (job.options.lambda_file.empty())
-        job.report.set_parameter("lambda", scheme.lambda);
-    else
-        job.report.set_parameter("lambda", job.options.lambda_file);
+    if (scheme.alpha_auto) job.report.set_parameter("alpha", std::string("auto"));
+    else job.report.set_parameter("alpha", scheme.alpha);
+    if (job.options.lambda_file.empty()) job.report.set_parameter("lambda", scheme.lambda);
+    else job.report.set_parameter("lambda", job.options.lambda_file);
 }
 
 void note_scheme_in_use(Job& job, lcl_operator A) {

@@ -90,10 +90,8 @@ std::string counted(long long count, const char* one, const char* many) { return
 std::string byte_text(unsigned long long bytes) {
     char text[32];
     const double mebibytes = static_cast<double>(bytes) / 1048576.0;
-    if (mebibytes >= 1024.0)
-        std::snprintf(text, sizeof text, "%.1f GiB", mebibytes / 1024.0);
-    else
-        std::snprintf(text, sizeof text, "%.0f MiB", mebibytes);
+    if (mebibytes >= 1024.0) std::snprintf(text, sizeof text, "%.1f GiB", mebibytes / 1024.0);
+    else std::snprintf(text, sizeof text, "%.0f MiB", mebibytes);
     return text;
 }
 

@@ -187,7 +187,6 @@ void set_argument(cl_kernel kernel, unsigned place, const Buffer& buffer) {
     check_argument(clSetKernelArg(kernel, place, sizeof memory, &memory), kernel, place);
 }
 
-
 void set_argument_bytes(cl_kernel kernel, unsigned place, const void* value, std::size_t bytes) {
     check_argument(clSetKernelArg(kernel, place, bytes, value), kernel, place);
 }

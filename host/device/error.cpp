@@ -7,8 +7,7 @@ namespace lcl {
 
 const char* opencl_error_name(int code) {
 #define LCL_NAME(code_name) \
-    case code_name:         \
-        return #code_name
+    case code_name: return #code_name
     switch (code) {
         LCL_NAME(CL_SUCCESS);
         LCL_NAME(CL_DEVICE_NOT_FOUND);
@@ -70,8 +69,7 @@ const char* opencl_error_name(int code) {
         LCL_NAME(CL_INVALID_LINKER_OPTIONS);
         LCL_NAME(CL_INVALID_DEVICE_PARTITION_COUNT);
         LCL_NAME(CL_PLATFORM_NOT_FOUND_KHR);
-        default:
-            return "an OpenCL error without a name";
+        default: return "an OpenCL error without a name";
     }
 #undef LCL_NAME
 }

@@ -34,7 +34,8 @@ Transform fit_transform(const Plan& plan, const double* values, std::size_t stri
         for (int c = 0; c < channels; ++c) {
             if (!std::isfinite(value[c])) {
                 const Index v = plan.vertex_of_row[row];
-                throw BadInput("channel " + std::to_string(c) + " of vertex " + std::to_string(v) + " is not finite: correct or leave out the value", {{v}, {}});
+                throw BadInput("channel " + std::to_string(c) + " of vertex " + std::to_string(v) + " is not finite: correct or leave out the value",
+                               {{v}, {}});
             }
             low[c] = std::min(low[c], value[c]);
             high[c] = std::max(high[c], value[c]);
@@ -48,7 +49,8 @@ Transform fit_transform(const Plan& plan, const double* values, std::size_t stri
         const double size = c < 3 ? diagonal : high[c] - low[c];
         transform.centre[c] = low[c] + (high[c] - low[c]) / 2;
         if (!std::isfinite(size) || (size > 0 && !std::isfinite(1 / size)))
-            throw BadInput("the values of channel " + std::to_string(c) + " go from " + std::to_string(low[c]) + " to " + std::to_string(high[c]) + ", a size that double precision cannot scale: use other units");
+            throw BadInput("the values of channel " + std::to_string(c) + " go from " + std::to_string(low[c]) + " to " + std::to_string(high[c]) +
+                           ", a size that double precision cannot scale: use other units");
         if (size > 0) transform.scale[c] = 1 / size;
     }
     return transform;

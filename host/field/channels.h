@@ -16,13 +16,15 @@ struct ChannelBlock {
 /// The first block holds the position, x, y, z (or fewer), alone: its norm is the residual E_k. Further channels follow in fours.
 std::vector<ChannelBlock> channel_blocks(int channels);
 
-/// stored = (value - centre) * scale, one of each a channel. Rows of A sum to 1, so A commutes with it, and models that are far away or huge lose nothing in float.
+/// stored = (value - centre) * scale, one of each a channel. Rows of A sum to 1, so A commutes with it, and models that are far away or huge lose nothing in
+/// float.
 struct Transform {
     std::vector<double> centre, scale;
 };
 
-/// Positions: centre and inverse diagonal of the bounding box; further channels: middle and inverse range. 1 where a range is 0. Isolated vertices are left out.
-/// BadInput for a value that is not finite, or values so large or so close together that their size or its inverse is none. values: row v of `stride` doubles belongs to vertex v.
+/// Positions: centre and inverse diagonal of the bounding box; further channels: middle and inverse range. 1 where a range is 0. Isolated vertices are left
+/// out. BadInput for a value that is not finite, or values so large or so close together that their size or its inverse is none. values: row v of `stride`
+/// doubles belongs to vertex v.
 Transform fit_transform(const Plan& plan, const double* values, std::size_t stride, int channels);
 
 /// Values in the plan's order, transformed: vertex_count x channels. Isolated vertices, which may be anywhere, are cut off at 1e37, so that

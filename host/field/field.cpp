@@ -30,7 +30,8 @@ struct Travelling {
 Field::Field(std::shared_ptr<Context> context, Index rows, int channels, Real real)
     : context_(std::move(context)), rows_(rows), channels_(channels), real_(real), blocks_(channel_blocks(channels)) {
     if (real == Real::full && !context_->device().has_double)
-        throw Unsupported("double precision was asked for, and " + context_->device().name + " has none: use mixed precision, which reaches the same tolerances");
+        throw Unsupported("double precision was asked for, and " + context_->device().name +
+                          " has none: use mixed precision, which reaches the same tolerances");
     for (std::size_t b = 0; b < blocks_.size(); ++b)
         buffers_.emplace_back(context_, std::max<std::size_t>(1, rows_) * row_bytes(b),
                               "a field of " + std::to_string(rows) + " rows and " + std::to_string(blocks_[b].count) + " channels");
@@ -75,7 +76,8 @@ void Field::upload(const double* values, Index first, Index count) {
             travelling.events[turn].wait();
             staging[turn].resize(rows * row_bytes(b));
             pack(values + begin * channels_, rows, b, staging[turn].data());
-            travelling.events[turn] = context_->write_async(buffers_[b], (first + begin) * row_bytes(b), rows * row_bytes(b), staging[turn].data(), before, "uploading a field");
+            travelling.events[turn] =
+                context_->write_async(buffers_[b], (first + begin) * row_bytes(b), rows * row_bytes(b), staging[turn].data(), before, "uploading a field");
         }
     for (const Event& event : travelling.events) event.wait();
 }
@@ -83,7 +85,9 @@ void Field::upload(const double* values, Index first, Index count) {
 void Field::download(double* values, Index first, Index count) const {
     std::array<std::vector<unsigned char>, 2> staging;
     Travelling travelling;
-    struct Piece { std::size_t block, begin, rows; };
+    struct Piece {
+        std::size_t block, begin, rows;
+    };
     std::array<Piece, 2> pieces{};
     const Event before = context_->marker();
     const auto finish = [&](int turn) {
@@ -97,7 +101,8 @@ void Field::download(double* values, Index first, Index count) const {
             finish(turn);
             const std::size_t rows = std::min(piece_rows, count - begin);
             staging[turn].resize(rows * row_bytes(b));
-            travelling.events[turn] = context_->read_async(buffers_[b], (first + begin) * row_bytes(b), rows * row_bytes(b), staging[turn].data(), before, "downloading a field");
+            travelling.events[turn] =
+                context_->read_async(buffers_[b], (first + begin) * row_bytes(b), rows * row_bytes(b), staging[turn].data(), before, "downloading a field");
             pieces[turn] = {b, begin, rows};
         }
     finish(turn);
@@ -115,7 +120,8 @@ void Field::fill_zero() {
 std::string kernel_options(const Context& context, Real real, int width, int group) {
     const bool has_double = context.device().has_double;
     const bool is_double = real == Real::full || (real == Real::wide && has_double);
-    std::string options = std::string("-D LCL_REAL=") + (is_double ? "double" : "float") + " -D LCL_WIDTH=" + std::to_string(width) + " -D LCL_GROUP=" + std::to_string(group);
+    std::string options =
+        std::string("-D LCL_REAL=") + (is_double ? "double" : "float") + " -D LCL_WIDTH=" + std::to_string(width) + " -D LCL_GROUP=" + std::to_string(group);
     if (has_double) options += " -D LCL_HAS_DOUBLE";
     if (real == Real::wide && !has_double) options += " -D LCL_PAIR";
     return options;

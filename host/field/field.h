@@ -12,9 +12,9 @@ namespace lcl {
 
 /// Number type of a field on the device.
 enum class Real : std::uint8_t {
-    single,   ///< float
-    wide,     ///< the exact half of mixed precision: double where the device has it, else pairs of floats (48 bits)
-    full      ///< double; refused without double precision
+    single,  ///< float
+    wide,    ///< the exact half of mixed precision: double where the device has it, else pairs of floats (48 bits)
+    full     ///< double; refused without double precision
 };
 
 /// Rows are in the plan's order; the values are normalised by the caller's Transform.
@@ -31,8 +31,8 @@ public:
     const Buffer& buffer(std::size_t block) const { return buffers_[block]; }
     std::size_t row_bytes(std::size_t block) const;
 
-    /// Rows [first, first + count) from and to normalised doubles in the plan's order, `values` pointing at row `first`: count x channels. Large uploads convert one piece while the
-    /// piece before travels.
+    /// Rows [first, first + count) from and to normalised doubles in the plan's order, `values` pointing at row `first`: count x channels. Large uploads
+    /// convert one piece while the piece before travels.
     void upload(const double* values, Index first, Index count);
     void download(double* values, Index first, Index count) const;
     /// Copies all rows of a field of the same shape and type, on the device.

@@ -83,10 +83,8 @@ void warn_of_properties(const MeshFile& file, const FormatRow& row, std::vector<
 
 void warn_of_texture_coordinates(const MeshFile& file, const FormatRow& row, std::vector<std::string>& warnings) {
     if (!has_texture_coordinates(file) || (row.holds_vertex_uvs && has_vertex_texture_coordinates(file) && file.uvs.components == 2)) return;
-    if (!row.holds_corner_uvs)
-        warnings.push_back(std::string(row.name) + " cannot hold these texture coordinates; they are left out");
-    else if (row.format == FileFormat::ply && file.uvs.components > 2)
-        warnings.push_back("PLY cannot hold the third texture coordinate; it is left out");
+    if (!row.holds_corner_uvs) warnings.push_back(std::string(row.name) + " cannot hold these texture coordinates; they are left out");
+    else if (row.format == FileFormat::ply && file.uvs.components > 2) warnings.push_back("PLY cannot hold the third texture coordinate; it is left out");
 }
 
 void warn_of_isolated_vertices(const MeshFile& file, std::vector<std::string>& warnings) {

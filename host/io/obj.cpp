@@ -42,30 +42,21 @@ private:
     void read_statement() {
         statement_ = scan_.at();
         const std::string_view keyword = scan_.word();
-        if (keyword == "v")
-            read_vertex();
-        else if (keyword == "f")
-            read_face();
-        else if (keyword == "vt")
-            read_texture_coordinate();
-        else if (keyword == "vn")
-            return;
-        else if (keyword == "t")
-            read_tag();
-        else if (keyword == "o" || keyword == "g" || keyword == "s" || keyword == "usemtl" || keyword == "mtllib")
-            keep_line();
-        else
-            count_unknown(printable(keyword));
+        if (keyword == "v") read_vertex();
+        else if (keyword == "f") read_face();
+        else if (keyword == "vt") read_texture_coordinate();
+        else if (keyword == "vn") return;
+        else if (keyword == "t") read_tag();
+        else if (keyword == "o" || keyword == "g" || keyword == "s" || keyword == "usemtl" || keyword == "mtllib") keep_line();
+        else count_unknown(printable(keyword));
     }
 
     /// Reads the numbers of a line, as many as `values` takes, and gives how many there are.
     int numbers(double* values, int capacity, const char* what) {
         int count = 0;
         for (scan_.skip_blanks(); !scan_.at_line_end(); scan_.skip_blanks(), ++count) {
-            if (count < capacity)
-                values[count] = scan_.number(what);
-            else
-                scan_.word();
+            if (count < capacity) values[count] = scan_.number(what);
+            else scan_.word();
         }
         return count;
     }
@@ -182,16 +173,11 @@ private:
     void read_tag() {
         scan_.skip_blanks();
         const std::string name = printable(scan_.word());
-        if (name == "crease")
-            read_crease();
-        else if (name == "corner")
-            read_corner_tag();
-        else if (name == "interpolateboundary")
-            read_boundary_rule();
-        else if (name.empty())
-            count_unknown("t");
-        else if (std::find(file_.tags.ignored.begin(), file_.tags.ignored.end(), name) == file_.tags.ignored.end())
-            file_.tags.ignored.push_back(name);
+        if (name == "crease") read_crease();
+        else if (name == "corner") read_corner_tag();
+        else if (name == "interpolateboundary") read_boundary_rule();
+        else if (name.empty()) count_unknown("t");
+        else if (std::find(file_.tags.ignored.begin(), file_.tags.ignored.end(), name) == file_.tags.ignored.end()) file_.tags.ignored.push_back(name);
     }
 
     struct TagArguments {

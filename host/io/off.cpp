@@ -223,10 +223,8 @@ private:
             const double unit = full_intensity(column ? *column : *colours_.red);
             const double value = column ? column->values[vertex] : unit;
             out_.character(' ');
-            if (unit == 255)
-                write_byte(value);
-            else
-                write_fraction(value / unit);
+            if (unit == 255) write_byte(value);
+            else write_fraction(value / unit);
         }
     }
 

@@ -40,10 +40,8 @@ public:
     }
     ~Silence() {
         for (int i = 0; i < 3; ++i)
-            if (was_enabled_[i])
-                streams_[i]->enable();
-            else
-                streams_[i]->disable();
+            if (was_enabled_[i]) streams_[i]->enable();
+            else streams_[i]->disable();
     }
     Silence(const Silence&) = delete;
     Silence& operator=(const Silence&) = delete;

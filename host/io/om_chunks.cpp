@@ -59,10 +59,8 @@ public:
             if (!read_chunk()) break;
         if (vertices_ > 0 && !positions_) fail("there are no vertex positions");
         if (faces_ > 0 && !face_topology_) fail("there are no faces, though the header counts " + std::to_string(faces_));
-        if (is_version_2_)
-            check_half_edges();
-        else
-            check_face_vertices();
+        if (is_version_2_) check_half_edges();
+        else check_face_vertices();
         content_.vertex_count = static_cast<Index>(vertices_);
         content_.face_count = static_cast<Index>(faces_);
         content_.has_colours = static_cast<bool>(colours_);
@@ -129,18 +127,12 @@ private:
 
     std::uint64_t entity_count(const ChunkHead& head) const {
         switch (head.entity) {
-            case entity_vertex:
-                return vertices_;
-            case entity_face:
-                return faces_;
-            case entity_edge:
-                return edges_;
-            case entity_halfedge:
-                return 2 * edges_;
-            case entity_mesh:
-                return 1;
-            default:
-                fail("a chunk belongs to no known kind of entity");
+            case entity_vertex: return vertices_;
+            case entity_face: return faces_;
+            case entity_edge: return edges_;
+            case entity_halfedge: return 2 * edges_;
+            case entity_mesh: return 1;
+            default: fail("a chunk belongs to no known kind of entity");
         }
     }
 
@@ -183,16 +175,11 @@ private:
             return nullptr;
         }
         switch (head.type) {
-            case type_position:
-                return &positions_;
-            case type_colour:
-                return &colours_;
-            case type_status:
-                return &vertex_status_;
-            case type_topology:
-                return &vertex_topology_;
-            default:
-                return nullptr;
+            case type_position: return &positions_;
+            case type_colour: return &colours_;
+            case type_status: return &vertex_status_;
+            case type_topology: return &vertex_topology_;
+            default: return nullptr;
         }
     }
 

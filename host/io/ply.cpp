@@ -103,22 +103,14 @@ public:
 
     double scalar(Scalar scalar) {
         switch (scalar) {
-            case Scalar::int8:
-                return take<std::int8_t>();
-            case Scalar::uint8:
-                return take<std::uint8_t>();
-            case Scalar::int16:
-                return take<std::int16_t>();
-            case Scalar::uint16:
-                return take<std::uint16_t>();
-            case Scalar::int32:
-                return take<std::int32_t>();
-            case Scalar::uint32:
-                return take<std::uint32_t>();
-            case Scalar::float32:
-                return static_cast<double>(take<float>());
-            case Scalar::float64:
-                break;
+            case Scalar::int8: return take<std::int8_t>();
+            case Scalar::uint8: return take<std::uint8_t>();
+            case Scalar::int16: return take<std::int16_t>();
+            case Scalar::uint16: return take<std::uint16_t>();
+            case Scalar::int32: return take<std::int32_t>();
+            case Scalar::uint32: return take<std::uint32_t>();
+            case Scalar::float32: return static_cast<double>(take<float>());
+            case Scalar::float64: break;
         }
         return take<double>();
     }
@@ -179,12 +171,9 @@ private:
             const char* first = scan_.at();
             const std::string_view keyword = scan_.word();
             if (keyword == "end_header") break;
-            if (keyword == "format")
-                read_format();
-            else if (keyword == "element")
-                read_element(first);
-            else if (keyword == "property")
-                read_property(first);
+            if (keyword == "format") read_format();
+            else if (keyword == "element") read_element(first);
+            else if (keyword == "property") read_property(first);
             else if (keyword != "comment" && keyword != "obj_info" && !keyword.empty())
                 scan_.fail(first, "'" + printable(keyword) + "' is no line of a PLY header");
             scan_.skip_line();
@@ -298,12 +287,9 @@ private:
             source.begin_row();
             for (std::size_t p = 0; p < columns.size(); ++p) {
                 const Property& property = element.properties[p];
-                if (property.is_list)
-                    skip_list(source, property);
-                else if (columns[p].first)
-                    columns[p].first[v * columns[p].stride] = source.scalar(property.scalar);
-                else
-                    source.scalar(property.scalar);
+                if (property.is_list) skip_list(source, property);
+                else if (columns[p].first) columns[p].first[v * columns[p].stride] = source.scalar(property.scalar);
+                else source.scalar(property.scalar);
             }
             source.end_row();
         }
@@ -356,14 +342,10 @@ private:
         for (std::size_t f = 0; f < element.count; ++f) {
             source.begin_row();
             for (const Property& property : element.properties) {
-                if (&property == corners)
-                    read_corners(source, property, f);
-                else if (&property == texcoord)
-                    read_list(source, property, values);
-                else if (property.is_list)
-                    skip_list(source, property);
-                else
-                    source.scalar(property.scalar);
+                if (&property == corners) read_corners(source, property, f);
+                else if (&property == texcoord) read_list(source, property, values);
+                else if (property.is_list) skip_list(source, property);
+                else source.scalar(property.scalar);
             }
             source.end_row();
             if (texcoord) add_texture_coordinates(values);
@@ -426,10 +408,8 @@ private:
         for (std::size_t row = 0; row < element.count; ++row) {
             source.begin_row();
             for (const Property& property : element.properties) {
-                if (property.is_list)
-                    skip_list(source, property);
-                else
-                    source.scalar(property.scalar);
+                if (property.is_list) skip_list(source, property);
+                else source.scalar(property.scalar);
             }
             source.end_row();
         }
@@ -449,10 +429,8 @@ private:
     }
 
     void finish_texture_coordinates() {
-        if (file_.uvs.values.empty())
-            file_.uvs = {};
-        else if (faces_without_uvs_ > 0)
-            file_.warnings.push_back(std::to_string(faces_without_uvs_) + " faces have no two texture coordinates a corner");
+        if (file_.uvs.values.empty()) file_.uvs = {};
+        else if (faces_without_uvs_ > 0) file_.warnings.push_back(std::to_string(faces_without_uvs_) + " faces have no two texture coordinates a corner");
     }
 
     const InputBytes& input_;
@@ -544,22 +522,14 @@ private:
 
     void write_scalar(double value, Scalar scalar) {
         switch (scalar) {
-            case Scalar::int8:
-                return write_whole<std::int8_t>(value);
-            case Scalar::uint8:
-                return write_whole<std::uint8_t>(value);
-            case Scalar::int16:
-                return write_whole<std::int16_t>(value);
-            case Scalar::uint16:
-                return write_whole<std::uint16_t>(value);
-            case Scalar::int32:
-                return write_whole<std::int32_t>(value);
-            case Scalar::uint32:
-                return write_whole<std::uint32_t>(value);
-            case Scalar::float32:
-                return is_ascii_ ? write_value(value) : write_value(static_cast<float>(value));
-            case Scalar::float64:
-                return write_value(value);
+            case Scalar::int8: return write_whole<std::int8_t>(value);
+            case Scalar::uint8: return write_whole<std::uint8_t>(value);
+            case Scalar::int16: return write_whole<std::int16_t>(value);
+            case Scalar::uint16: return write_whole<std::uint16_t>(value);
+            case Scalar::int32: return write_whole<std::int32_t>(value);
+            case Scalar::uint32: return write_whole<std::uint32_t>(value);
+            case Scalar::float32: return is_ascii_ ? write_value(value) : write_value(static_cast<float>(value));
+            case Scalar::float64: return write_value(value);
         }
     }
 
@@ -574,10 +544,8 @@ private:
         if (!is_ascii_) return out_.raw(value, swap_);
         if (row_has_values_) out_.character(' ');
         row_has_values_ = true;
-        if constexpr (sizeof(T) == 1)
-            out_.number(static_cast<int>(value));
-        else
-            out_.number(value);
+        if constexpr (sizeof(T) == 1) out_.number(static_cast<int>(value));
+        else out_.number(value);
     }
 
     const MeshFile& file_;

@@ -66,10 +66,8 @@ public:
 
     MeshFile read() {
         const std::uint64_t told = told_size();
-        if (told == input_.size)
-            read_binary();
-        else if (looks_ascii())
-            read_ascii();
+        if (told == input_.size) read_binary();
+        else if (looks_ascii()) read_ascii();
         else if (input_.size >= head_size && told < input_.size) {
             file_.warnings.push_back(std::to_string(input_.size - told) + " bytes behind the last triangle were ignored");
             read_binary();

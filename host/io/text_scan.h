@@ -46,10 +46,8 @@ public:
 
     void skip_blanks() {
         while (at_ != end_) {
-            if (is_blank(*at_))
-                ++at_;
-            else if (*at_ != '\\' || !skip_joint())
-                return;
+            if (is_blank(*at_)) ++at_;
+            else if (*at_ != '\\' || !skip_joint()) return;
         }
     }
 

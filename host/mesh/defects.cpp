@@ -20,7 +20,8 @@ public:
 
     bool is_first() const { return count_ == 0; }
 
-    template <class Faces> void add(std::initializer_list<Index> vertices, const Faces& faces) {
+    template <class Faces>
+    void add(std::initializer_list<Index> vertices, const Faces& faces) {
         ++count_;
         keep(vertices, defect_.where.vertices);
         keep(faces, defect_.where.faces);
@@ -37,7 +38,8 @@ public:
     }
 
 private:
-    template <class Items> static void keep(const Items& from, std::vector<Index>& to) {
+    template <class Items>
+    static void keep(const Items& from, std::vector<Index>& to) {
         for (const Index i : from)
             if (to.size() < places_kept && std::find(to.begin(), to.end(), i) == to.end()) to.push_back(i);
     }
@@ -114,19 +116,22 @@ std::vector<char> find_corner_defects(const PolygonMesh& mesh, std::vector<Defec
             bad[f] = 1;
         }
         if (const Index twice = repeated_vertex(corners, f, mesh.vertex_count, last_face); twice >= 0) {
-            if (repeated.is_first()) repeated.set_message("face " + text(f) + " uses vertex " + text(twice) + " more than once", "remove the corner or the face");
+            if (repeated.is_first())
+                repeated.set_message("face " + text(f) + " uses vertex " + text(twice) + " more than once", "remove the corner or the face");
             repeated.add({twice}, {f});
             bad[f] = 1;
         }
         if (corners.size() < 3) {
-            const std::string found = offsets_fit(mesh, f) ? "has " + text(corners.size()) + " corners, fewer than 3" : "has offsets outside the list of corners";
+            const std::string found =
+                offsets_fit(mesh, f) ? "has " + text(corners.size()) + " corners, fewer than 3" : "has offsets outside the list of corners";
             if (few.is_first()) few.set_message("face " + text(f) + " " + found, "remove the face");
             few.add({}, {f});
             bad[f] = 1;
         }
     }
     if (range.is_first() && !offsets_span(mesh)) {
-        range.set_message("the faces' offsets do not span the list of " + std::to_string(mesh.face_vertices.size()) + " corners", "make them begin at 0 and end there");
+        range.set_message("the faces' offsets do not span the list of " + std::to_string(mesh.face_vertices.size()) + " corners",
+                          "make them begin at 0 and end there");
         range.add({}, {});
     }
     range.append_to(defects);
@@ -191,15 +196,16 @@ void find_edge_defects(const LooseHalfEdges& half_edges, const EdgeGroups& group
             std::vector<Index> faces;
             for (Index i = 0; i < size; ++i) faces.push_back(half_edges.face[begin[i]]);
             if (crowded.is_first())
-                crowded.set_message("edge " + edge_name(a, b) + " belongs to " + text(size) + " faces (" + list(faces) + "), a manifold mesh has at most two at an edge",
-                                    "remove faces or give them their own copies of the edge's vertices");
+                crowded.set_message(
+                    "edge " + edge_name(a, b) + " belongs to " + text(size) + " faces (" + list(faces) + "), a manifold mesh has at most two at an edge",
+                    "remove faces or give them their own copies of the edge's vertices");
             crowded.add({std::min(a, b), std::max(a, b)}, faces);
         } else if (size == 2 && half_edges.origin(begin[1]) == a) {
             const Index f = half_edges.face[begin[0]], g = half_edges.face[begin[1]];
             if (orientation.is_first())
-                orientation.set_message("faces " + text(f) + " and " + text(g) + " run along edge " + edge_name(a, b) +
-                                            " in the same direction, so their orientations disagree",
-                                        "reverse the order of the vertices in one of them");
+                orientation.set_message(
+                    "faces " + text(f) + " and " + text(g) + " run along edge " + edge_name(a, b) + " in the same direction, so their orientations disagree",
+                    "reverse the order of the vertices in one of them");
             orientation.add({std::min(a, b), std::max(a, b)}, {f, g});
         }
     }
@@ -232,8 +238,9 @@ void find_vertex_defects(const LooseHalfEdges& half_edges, const EdgeGroups& gro
     for (Index v = 0; v < half_edges.mesh.vertex_count; ++v) {
         if (fans[v] < 2) continue;
         if (vertices.is_first())
-            vertices.set_message("vertex " + text(v) + " joins " + text(fans[v]) + " fans of faces that share no edge there, with faces " +
-                                     text(first_fan[v]) + " and " + text(second_fan[v]) + " in different ones", "give each fan its own copy of the vertex");
+            vertices.set_message("vertex " + text(v) + " joins " + text(fans[v]) + " fans of faces that share no edge there, with faces " + text(first_fan[v]) +
+                                     " and " + text(second_fan[v]) + " in different ones",
+                                 "give each fan its own copy of the vertex");
         vertices.add({v}, {first_fan[v], second_fan[v]});
     }
 }
@@ -263,7 +270,11 @@ void find_position_defects(const PolygonMesh& mesh, std::vector<Defect>& defects
             if (std::isfinite(x)) continue;
             const Index vertex = static_cast<Index>(v);
             if (collector.is_first())
-                collector.set_message("vertex " + text(vertex) + " has " + "xyz"[c] + " = " + (std::isnan(x) ? "nan" : x > 0 ? "inf" : "-inf") + ", which is not finite",
+                collector.set_message("vertex " + text(vertex) + " has " + "xyz"[c] + " = " +
+                                          (std::isnan(x) ? "nan"
+                                           : x > 0       ? "inf"
+                                                         : "-inf") +
+                                          ", which is not finite",
                                       "correct the coordinate");
             collector.add({vertex}, {});
             break;

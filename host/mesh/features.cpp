@@ -82,7 +82,8 @@ void mark_creases_by_angle(const PolygonMesh& mesh, const Topology& topology, do
 }
 
 /// Visits the edges at v in face order, beginning with that of its own half-edge: visit(edge, other end).
-template <class Visit> void for_each_edge_at(const Topology& topology, Index v, Visit&& visit) {
+template <class Visit>
+void for_each_edge_at(const Topology& topology, Index v, Visit&& visit) {
     const Index start = topology.vertex_half_edge[v];
     Index h = start;
     do {

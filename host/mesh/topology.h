@@ -15,19 +15,25 @@ struct Topology {
     Index vertex_count = 0;
     Index face_count = 0;
     Index edge_count = 0;
-    std::vector<Index> face_offsets;        ///< face_count + 1
-    std::vector<Index> face_vertices;       ///< origin of each half-edge
-    std::vector<Index> half_edge_face;      ///< face of each half-edge
-    std::vector<Index> twin;                ///< opposite half-edge, -1 at a boundary
-    std::vector<Index> half_edge_edge;      ///< edge of each half-edge
-    std::vector<Index> edge_half_edge;      ///< edge_count: the half-edge in which the edge appeared first
-    std::vector<Index> vertex_half_edge;    ///< vertex_count: an outgoing half-edge, -1 if isolated; at a boundary the one without twin
-    std::vector<Index> vertex_face_count;   ///< vertex_count: number of faces round the vertex (n of the formulas)
+    std::vector<Index> face_offsets;       ///< face_count + 1
+    std::vector<Index> face_vertices;      ///< origin of each half-edge
+    std::vector<Index> half_edge_face;     ///< face of each half-edge
+    std::vector<Index> twin;               ///< opposite half-edge, -1 at a boundary
+    std::vector<Index> half_edge_edge;     ///< edge of each half-edge
+    std::vector<Index> edge_half_edge;     ///< edge_count: the half-edge in which the edge appeared first
+    std::vector<Index> vertex_half_edge;   ///< vertex_count: an outgoing half-edge, -1 if isolated; at a boundary the one without twin
+    std::vector<Index> vertex_face_count;  ///< vertex_count: number of faces round the vertex (n of the formulas)
 
     Index half_edge_count() const { return static_cast<Index>(face_vertices.size()); }
     Index degree(Index face) const { return face_offsets[face + 1] - face_offsets[face]; }
-    Index next(Index h) const { const Index f = half_edge_face[h]; return h + 1 < face_offsets[f + 1] ? h + 1 : face_offsets[f]; }
-    Index previous(Index h) const { const Index f = half_edge_face[h]; return h > face_offsets[f] ? h - 1 : face_offsets[f + 1] - 1; }
+    Index next(Index h) const {
+        const Index f = half_edge_face[h];
+        return h + 1 < face_offsets[f + 1] ? h + 1 : face_offsets[f];
+    }
+    Index previous(Index h) const {
+        const Index f = half_edge_face[h];
+        return h > face_offsets[f] ? h - 1 : face_offsets[f + 1] - 1;
+    }
     Index origin(Index h) const { return face_vertices[h]; }
     Index destination(Index h) const { return face_vertices[next(h)]; }
     /// The next outgoing half-edge round the origin of h in face order (counter-clockwise), -1 past the last face of a boundary vertex.
@@ -40,7 +46,13 @@ struct Topology {
 };
 
 enum class DefectKind {
-    index_range, repeated_vertex, short_face, edge_with_three_faces, non_manifold_vertex, orientation, not_finite,
+    index_range,
+    repeated_vertex,
+    short_face,
+    edge_with_three_faces,
+    non_manifold_vertex,
+    orientation,
+    not_finite,
     zero_area  ///< listed only, no ground for refusal
 };
 

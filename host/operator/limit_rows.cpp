@@ -99,7 +99,8 @@ void LimitRows::ring_neighbours(Index v, const RowClass& row, Index* out) const 
 
 RingWeights LimitRows::ring_weights(const RowClass& row) const {
     if (row.shape == RowShape::identity) return {};
-    const RingWeights plain = row.kind == RowKind::curve ? curve_weights(options_.scheme) : smooth_ring_weights(options_, row.edges, row.shape == RowShape::full_ring);
+    const RingWeights plain =
+        row.kind == RowKind::curve ? curve_weights(options_.scheme) : smooth_ring_weights(options_, row.edges, row.shape == RowShape::full_ring);
     return blend(plain, options_.lambda);
 }
 
@@ -146,8 +147,8 @@ void LimitRows::add_dart(Index v, LimitRow& row) {
     for (int j = 0; j < n; ++j, h = t.rotate(h)) add(row, t.destination(h), weights[1 + j]);
 }
 
-/// The umbrella weights pulled back through the first refinement: V' = ((n - 2 + alpha) V)/n + ((1 - alpha) sum E + sum F)/n^2, E' = (V + E + F_left + F_right)/4 or, on the
-/// sharp edge, (V + E)/2; F: face centroids.
+/// The umbrella weights pulled back through the first refinement: V' = ((n - 2 + alpha) V)/n + ((1 - alpha) sum E + sum F)/n^2, E' = (V + E + F_left +
+/// F_right)/4 or, on the sharp edge, (V + E)/2; F: face centroids.
 void LimitRows::add_catmull_clark_dart(Index v, Index first, const std::vector<double>& weights, LimitRow& row) const {
     const Topology& t = topology_;
     const int n = t.vertex_face_count[v];

@@ -25,9 +25,9 @@ enum class RowKind : std::uint8_t {
 /// How the weights of a row are had.
 enum class RowShape : std::uint8_t {
     identity,
-    ring,      ///< weights of RingWeights on [edge ends]
-    full_ring, ///< weights of RingWeights on [edge ends, face diagonals]
-    weighted   ///< own weights: polygons, darts, one blend ratio a vertex
+    ring,       ///< weights of RingWeights on [edge ends]
+    full_ring,  ///< weights of RingWeights on [edge ends, face diagonals]
+    weighted    ///< own weights: polygons, darts, one blend ratio a vertex
 };
 
 struct RowClass {
@@ -46,7 +46,8 @@ struct LimitRow {
 class LimitRows {
 public:
     /// subset: empty, or 1 for each vertex that is interpolated; owned: empty, or 1 for each vertex that gets a row.
-    LimitRows(const Topology& topology, const Features& features, const SchemeOptions& options, const std::vector<std::uint8_t>& subset, const std::vector<std::uint8_t>& owned);
+    LimitRows(const Topology& topology, const Features& features, const SchemeOptions& options, const std::vector<std::uint8_t>& subset,
+              const std::vector<std::uint8_t>& owned);
 
     RowClass classify(Index v) const;
     /// Neighbours of a ring row: edge ends E_0 .. in face order, then for full_ring the diagonals F_0 ... `out` has room for edges or 2 edges.

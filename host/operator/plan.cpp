@@ -21,7 +21,10 @@ std::int64_t shape_code(const RowClass& row) { return (static_cast<std::int64_t>
 class PlanBuilder {
 public:
     PlanBuilder(const PolygonMesh& mesh, const Topology& topology, const Features& features, const SchemeOptions& options, const PlanOptions& plan_options)
-        : mesh_(mesh), topology_(topology), options_(options), plan_options_(plan_options),
+        : mesh_(mesh),
+          topology_(topology),
+          options_(options),
+          plan_options_(plan_options),
           rows_(topology, features, options, plan_options.subset, plan_options.owned) {}
 
     Plan build() {
@@ -66,12 +69,16 @@ private:
         const auto used = std::stable_partition(first, first + plan_.fixed.end_row(), [&](Index v) { return topology_.is_isolated(v); });
         plan_.isolated_count = static_cast<Index>(used - first);
         for (int kind = 0; kind < part_count - 1; ++kind) cut_into_blocks(part(kind));
-        parallel_for(plan_.blocks.size(), [&](std::size_t begin, std::size_t end) {
-            for (std::size_t b = begin; b < end; ++b) {
-                const auto first = plan_.vertex_of_row.begin() + plan_.blocks[b].first_row;
-                std::stable_sort(first, first + plan_.blocks[b].row_count, [&](Index a, Index c) { return shape_code(classes_[a]) < shape_code(classes_[c]); });
-            }
-        }, 4);
+        parallel_for(
+            plan_.blocks.size(),
+            [&](std::size_t begin, std::size_t end) {
+                for (std::size_t b = begin; b < end; ++b) {
+                    const auto first = plan_.vertex_of_row.begin() + plan_.blocks[b].first_row;
+                    std::stable_sort(first, first + plan_.blocks[b].row_count,
+                                     [&](Index a, Index c) { return shape_code(classes_[a]) < shape_code(classes_[c]); });
+                }
+            },
+            4);
         plan_.row_of_vertex.resize(plan_.vertex_count);
         for (Index row = 0; row < plan_.vertex_count; ++row) plan_.row_of_vertex[plan_.vertex_of_row[row]] = row;
     }
@@ -90,7 +97,8 @@ private:
             block.first_run = static_cast<Index>(plan_.runs.size());
             for (Index row = block.first_row; row < block.first_row + block.row_count; ++row) {
                 const RowClass& kind = classes_[plan_.vertex_of_row[row]];
-                if (row == block.first_row || shape_code(kind) != shape_code(classes_[plan_.vertex_of_row[row - 1]])) start_run(row, kind, ring_entries, weighted);
+                if (row == block.first_row || shape_code(kind) != shape_code(classes_[plan_.vertex_of_row[row - 1]]))
+                    start_run(row, kind, ring_entries, weighted);
                 Run& run = plan_.runs.back();
                 ++run.count;
                 ring_entries += run.stride();
@@ -99,7 +107,8 @@ private:
             block.run_count = static_cast<Index>(plan_.runs.size()) - block.first_run;
         }
         if (ring_entries > std::numeric_limits<std::uint32_t>::max())
-            throw OutOfMemory("the limit stencils of this mesh have " + std::to_string(ring_entries) + " neighbours, 4294967295 are the most: split the mesh into parts");
+            throw OutOfMemory("the limit stencils of this mesh have " + std::to_string(ring_entries) +
+                              " neighbours, 4294967295 are the most: split the mesh into parts");
         plan_.indices.resize(ring_entries);
     }
 
@@ -114,10 +123,13 @@ private:
     }
 
     void fill_rings() {
-        parallel_for(plan_.blocks.size(), [&](std::size_t begin, std::size_t end) {
-            for (std::size_t b = begin; b < end; ++b)
-                for (Index r = plan_.blocks[b].first_run; r < plan_.blocks[b].first_run + plan_.blocks[b].run_count; ++r) fill_run(plan_.runs[r]);
-        }, 4);
+        parallel_for(
+            plan_.blocks.size(),
+            [&](std::size_t begin, std::size_t end) {
+                for (std::size_t b = begin; b < end; ++b)
+                    for (Index r = plan_.blocks[b].first_run; r < plan_.blocks[b].first_run + plan_.blocks[b].run_count; ++r) fill_run(plan_.runs[r]);
+            },
+            4);
     }
 
     void fill_run(const Run& run) {

@@ -13,8 +13,8 @@ namespace lcl {
 struct Run {
     Index first = 0, count = 0;
     RowShape shape = RowShape::identity;
-    int edges = 0;                  ///< edge ends of a ring row
-    std::uint32_t index_offset = 0; ///< ring: place of the first row's neighbours in `indices`; weighted: number of the first row among the weighted ones
+    int edges = 0;                   ///< edge ends of a ring row
+    std::uint32_t index_offset = 0;  ///< ring: place of the first row's neighbours in `indices`; weighted: number of the first row among the weighted ones
     RingWeights weights;
 
     int stride() const { return shape == RowShape::ring ? edges : shape == RowShape::full_ring ? 2 * edges : 0; }
@@ -33,29 +33,29 @@ struct Part {
 };
 
 struct PlanOptions {
-    Index block_rows = 8192;          ///< rows a block holds at most: 8192 suits a CPU's cache
-    std::vector<std::uint8_t> subset; ///< empty, or 1 for each vertex that is interpolated
-    std::vector<std::uint8_t> owned;  ///< empty, or 1 for each vertex that gets a row; the others are ghosts
+    Index block_rows = 8192;           ///< rows a block holds at most: 8192 suits a CPU's cache
+    std::vector<std::uint8_t> subset;  ///< empty, or 1 for each vertex that is interpolated
+    std::vector<std::uint8_t> owned;   ///< empty, or 1 for each vertex that gets a row; the others are ghosts
 };
 
-/// Everything is in the plan's numbering: fixed rows, curves, darts, smooth rows, then ghosts without rows. Inside a part rows follow a Morton curve through the positions, and inside
-/// a block rows of equal shape stand together, so that sweeps find neighbours in cache and take no branch a row.
+/// Everything is in the plan's numbering: fixed rows, curves, darts, smooth rows, then ghosts without rows. Inside a part rows follow a Morton curve through
+/// the positions, and inside a block rows of equal shape stand together, so that sweeps find neighbours in cache and take no branch a row.
 struct Plan {
     Index vertex_count = 0, row_count = 0;
-    std::vector<Index> vertex_of_row; ///< vertex_count: caller's vertex; ghosts at the end
-    std::vector<Index> row_of_vertex; ///< the inverse
+    std::vector<Index> vertex_of_row;  ///< vertex_count: caller's vertex; ghosts at the end
+    std::vector<Index> row_of_vertex;  ///< the inverse
     Part fixed, curves, darts, smooth;
-    Index isolated_count = 0;         ///< the first rows of the fixed part: vertices without a face, left out of sizes and norms
+    Index isolated_count = 0;  ///< the first rows of the fixed part: vertices without a face, left out of sizes and norms
     std::vector<Run> runs;
     std::vector<Block> blocks;
-    std::vector<Index> indices;       ///< neighbours of ring rows, Run::stride() a row: edge ends, then diagonals
-    std::vector<std::uint32_t> weighted_offsets{0}; ///< weighted_count + 1
+    std::vector<Index> indices;                      ///< neighbours of ring rows, Run::stride() a row: edge ends, then diagonals
+    std::vector<std::uint32_t> weighted_offsets{0};  ///< weighted_count + 1
     std::vector<Index> weighted_indices;
     std::vector<double> weighted_weights;
-    std::vector<double> scaling;      ///< row_count: D_ii that makes D A symmetric on the smooth part; 0 elsewhere
-    std::vector<double> diagonal;     ///< row_count: A_ii
-    double lambda_min_bound = 0;      ///< proven lower bound of the smooth part's spectrum; NaN where none is known (valence below 3)
-    bool has_valence_2 = false;       ///< a smooth vertex with fewer than three faces
+    std::vector<double> scaling;   ///< row_count: D_ii that makes D A symmetric on the smooth part; 0 elsewhere
+    std::vector<double> diagonal;  ///< row_count: A_ii
+    double lambda_min_bound = 0;   ///< proven lower bound of the smooth part's spectrum; NaN where none is known (valence below 3)
+    bool has_valence_2 = false;    ///< a smooth vertex with fewer than three faces
 
     bool has_darts() const { return darts.row_count > 0; }
     Part all_rows() const { return {0, row_count, 0, static_cast<Index>(blocks.size())}; }

@@ -13,7 +13,8 @@ struct Graph {
     std::vector<Index> neighbours;
 };
 
-template <class Body> void for_each_entry(const Plan& plan, const Body& body) {
+template <class Body>
+void for_each_entry(const Plan& plan, const Body& body) {
     for (const Run& run : plan.runs)
         for (Index row = run.first; row < run.first + run.count; ++row) {
             if (run.shape == RowShape::weighted) {

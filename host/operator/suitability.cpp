@@ -58,8 +58,10 @@ Objection find_singular_component(const Topology& topology, const Features& feat
         const bool bipartite = two_colour(topology, v, colour, members);
         if (!bipartite || !std::all_of(members.begin(), members.end(), counts)) continue;
         std::sort(members.begin(), members.end());
-        objection.message = "Catmull-Clark interpolation has no unique solution here, and in general none: the closed component of vertices " + list(members) + " (" + std::to_string(members.size()) +
-                            ") has only valence 3 and no odd cycle of edges, which makes its limit operator singular: use alpha 0.5 (alpha auto does so) or a lambda above 0";
+        objection.message =
+            "Catmull-Clark interpolation has no unique solution here, and in general none: the closed component of vertices " + list(members) + " (" +
+            std::to_string(members.size()) +
+            ") has only valence 3 and no odd cycle of edges, which makes its limit operator singular: use alpha 0.5 (alpha auto does so) or a lambda above 0";
         members.resize(std::min<std::size_t>(10, members.size()));
         objection.vertices = members;
         return objection;

@@ -19,8 +19,9 @@ struct Objection {
 /// Loop on faces that are no triangles.
 Objection scheme_objection(const Topology& topology, const SchemeOptions& options);
 
-/// Exact criterion: Catmull-Clark with alpha = lambda = 0 is singular exactly when a closed smooth component, all of it interpolated, has only valence 3 and a bipartite edge graph (cube, even
-/// prisms, truncated octahedron, hexagonal tori): +1/-1 on the two classes is then a null vector. The message names the component's vertices and the cure. Linear time.
+/// Exact criterion: Catmull-Clark with alpha = lambda = 0 is singular exactly when a closed smooth component, all of it interpolated, has only valence 3 and a
+/// bipartite edge graph (cube, even prisms, truncated octahedron, hexagonal tori): +1/-1 on the two classes is then a null vector. The message names the
+/// component's vertices and the cure. Linear time.
 Objection find_singular_component(const Topology& topology, const Features& features, const SchemeOptions& options, const std::vector<std::uint8_t>& subset);
 
 }  // namespace lcl

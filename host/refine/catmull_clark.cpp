@@ -5,7 +5,8 @@
 namespace lcl {
 namespace {
 
-template <class Rows> void write_rows(const StepInput& input, Rows& rows) {
+template <class Rows>
+void write_rows(const StepInput& input, Rows& rows) {
     for (Index v = 0; v < input.topology.vertex_count; ++v) {
         rows.begin();
         add_vertex_point(input, v, 1, rows);

@@ -25,14 +25,16 @@ void add_sectors(const Topology& topology, const Features& features, Index v, st
     } while (h >= 0 && h != start);
     if (sectors.size() > before) return;
     if (topology.vertex_face_count[v] == 2)
-        throw BadInput("vertex " + std::to_string(v) + " has only two faces all round it, where Doo-Sabin makes a face of two sides: remove the vertex, "
-                       "make one of its edges a crease, or choose another scheme",
+        throw BadInput("vertex " + std::to_string(v) +
+                           " has only two faces all round it, where Doo-Sabin makes a face of two sides: remove the vertex, "
+                           "make one of its edges a crease, or choose another scheme",
                        Where{{v}, {topology.half_edge_face[start], topology.half_edge_face[topology.twin[start]]}});
     sectors.push_back({v, start, -1, true});
 }
 
 /// Visits the outgoing half-edges of a sector in face order; returns the last.
-template <class Visit> Index for_each_in_sector(const StepInput& input, const DooSabinLayout::Sector& sector, Visit&& visit) {
+template <class Visit>
+Index for_each_in_sector(const StepInput& input, const DooSabinLayout::Sector& sector, Visit&& visit) {
     const Topology& topology = input.topology;
     Index h = sector.first;
     while (true) {
@@ -101,7 +103,8 @@ void add_fan(const StepInput& input, const DooSabinLayout::Sector& sector, Quadr
     });
 }
 
-template <class Rows> void write_corner_row(const StepInput& input, Index h, Rows& rows) {
+template <class Rows>
+void write_corner_row(const StepInput& input, Index h, Rows& rows) {
     const Topology& topology = input.topology;
     const Index face = topology.half_edge_face[h];
     rows.begin();
@@ -119,7 +122,8 @@ template <class Rows> void write_corner_row(const StepInput& input, Index h, Row
     rows.end();
 }
 
-template <class Rows> void write_curve_rows(const Topology& topology, Index h, Rows& rows) {
+template <class Rows>
+void write_curve_rows(const Topology& topology, Index h, Rows& rows) {
     for (const double near : {3.0 / 4, 1.0 / 4}) {
         rows.begin();
         rows.add(topology.origin(h), near);
@@ -128,7 +132,8 @@ template <class Rows> void write_curve_rows(const Topology& topology, Index h, R
     }
 }
 
-template <class Rows> void write_rows(const StepInput& input, const DooSabinLayout& layout, Rows& rows) {
+template <class Rows>
+void write_rows(const StepInput& input, const DooSabinLayout& layout, Rows& rows) {
     const Topology& topology = input.topology;
     const auto write_same = [&](Index v) {
         rows.begin();

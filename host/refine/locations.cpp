@@ -43,8 +43,7 @@ std::vector<ParameterFrame> corner_frames_of_polygons(const Topology& topology) 
     frames.reserve(topology.half_edge_count());
     for (Index f = 0; f < topology.face_count; ++f) {
         const Index degree = topology.degree(f);
-        for (Index k = 0; k < degree; ++k)
-            frames.push_back(degree == 4 ? quarter_at({f, 0, 0, 0, 1, 0, 0, 1}, k) : ParameterFrame{f, k, 0, 0, 1, 0, 0, 1});
+        for (Index k = 0; k < degree; ++k) frames.push_back(degree == 4 ? quarter_at({f, 0, 0, 0, 1, 0, 0, 1}, k) : ParameterFrame{f, k, 0, 0, 1, 0, 0, 1});
     }
     return frames;
 }
@@ -79,9 +78,7 @@ LocationTracker::LocationTracker(const PolygonMesh& mesh, const Topology& topolo
     }
 }
 
-ParameterFrame LocationTracker::corner_frame(Index corner) const {
-    return by_corner_ ? frames_[corner] : quarter_at(frames_[corner / 4], corner % 4);
-}
+ParameterFrame LocationTracker::corner_frame(Index corner) const { return by_corner_ ? frames_[corner] : quarter_at(frames_[corner / 4], corner % 4); }
 
 void LocationTracker::step(const StepInput& input, const DooSabinLayout* layout, std::vector<std::uint8_t>&& quadrants) {
     if (scheme_ == Scheme::loop) return step_loop();

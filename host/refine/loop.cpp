@@ -16,7 +16,8 @@ double loop_beta(Index n) {
     return (5.0 / 8 - c * c) / n;
 }
 
-template <class Rows> void add_vertex_point(const StepInput& input, Index v, Rows& rows) {
+template <class Rows>
+void add_vertex_point(const StepInput& input, Index v, Rows& rows) {
     const Topology& topology = input.topology;
     const VertexKind kind = input.features.kind[v];
     if (kind == VertexKind::corner || kind == VertexKind::isolated) return rows.add(v, 1);
@@ -36,7 +37,8 @@ template <class Rows> void add_vertex_point(const StepInput& input, Index v, Row
     } while (h != start);
 }
 
-template <class Rows> void add_edge_point(const StepInput& input, Index e, Rows& rows) {
+template <class Rows>
+void add_edge_point(const StepInput& input, Index e, Rows& rows) {
     const Topology& topology = input.topology;
     const Index h = topology.edge_half_edge[e];
     const bool sharp = input.features.edge_is_sharp[e] != 0;
@@ -47,7 +49,8 @@ template <class Rows> void add_edge_point(const StepInput& input, Index e, Rows&
     rows.add(topology.origin(topology.previous(topology.twin[h])), 1.0 / 8);
 }
 
-template <class Rows> void write_rows(const StepInput& input, Rows& rows) {
+template <class Rows>
+void write_rows(const StepInput& input, Rows& rows) {
     for (Index v = 0; v < input.topology.vertex_count; ++v) {
         rows.begin();
         add_vertex_point(input, v, rows);
@@ -66,7 +69,8 @@ void check_triangles(const Topology& topology) {
     for (Index f = 0; f < topology.face_count; ++f) {
         if (topology.degree(f) == 3) continue;
         throw BadInput("face " + std::to_string(f) + " has " + std::to_string(topology.degree(f)) +
-                           " corners, Loop refines triangles only: triangulate the mesh or choose another scheme", Where{{}, {f}});
+                           " corners, Loop refines triangles only: triangulate the mesh or choose another scheme",
+                       Where{{}, {f}});
     }
 }
 

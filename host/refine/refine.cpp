@@ -85,9 +85,11 @@ void check_fits(const MeshCounts& counts, int level) {
         {counts.vertices, " vertices"}, {counts.edges, " edges"}, {counts.faces, " faces"}, {counts.corners, " face corners"}};
     for (const auto& [number, what] : numbers)
         if (number > index_limit)
-            throw OutOfMemory(at + "have " + std::to_string(number) + what + ", more than the " + std::to_string(index_limit) + " that can be numbered: use fewer levels");
+            throw OutOfMemory(at + "have " + std::to_string(number) + what + ", more than the " + std::to_string(index_limit) +
+                              " that can be numbered: use fewer levels");
     if (bytes_of(counts) > physical_memory())
-        throw OutOfMemory(at + "take " + std::to_string(bytes_of(counts)) + " bytes, this machine has " + std::to_string(physical_memory()) + ": use fewer levels");
+        throw OutOfMemory(at + "take " + std::to_string(bytes_of(counts)) + " bytes, this machine has " + std::to_string(physical_memory()) +
+                          ": use fewer levels");
 }
 
 /// Stencils repeat the corners of a face for each of its points: the square of the face degrees counts.
@@ -188,7 +190,8 @@ public:
         refined.features = refined_features(input_, two_phase_ ? 2 : 1);
     }
 
-    template <class Rows> void write_rows(Rows& rows) const {
+    template <class Rows>
+    void write_rows(Rows& rows) const {
         if (layout_) doo_sabin_rows(input_, *layout_, rows);
         else if (input_.options.scheme == Scheme::loop) loop_rows(input_, rows);
         else if (two_phase_) two_phase_rows(input_, rows);
@@ -261,7 +264,8 @@ Refinement refine_once(const PolygonMesh& mesh, const Topology& topology, const 
     return refined;
 }
 
-Refinement refine(const PolygonMesh& mesh, const FeatureOptions& feature_options, const SchemeOptions& options, int levels, std::vector<SurfaceLocation>* locations) {
+Refinement refine(const PolygonMesh& mesh, const FeatureOptions& feature_options, const SchemeOptions& options, int levels,
+                  std::vector<SurfaceLocation>* locations) {
     if (levels < 0) throw InvalidArgument("the number of refinement levels is " + std::to_string(levels) + ": it must be 0 or more");
     Topology topology = build_topology(mesh);
     Features features = find_features(mesh, topology, feature_options);

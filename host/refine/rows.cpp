@@ -9,9 +9,7 @@ namespace {
 constexpr double two_pi = 6.283185307179586;
 
 /// sin(2 pi k / m) out of the cosines: sin(x) = cos(x - pi/2) needs a quarter turn, so it is taken directly, exact at half turns.
-double sine_of_turn(Index k, Index m) {
-    return 2 * static_cast<std::int64_t>(k) % m == 0 ? 0 : std::sin(two_pi * k / m);
-}
+double sine_of_turn(Index k, Index m) { return 2 * static_cast<std::int64_t>(k) % m == 0 ? 0 : std::sin(two_pi * k / m); }
 
 }  // namespace
 

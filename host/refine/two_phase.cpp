@@ -7,7 +7,8 @@
 namespace lcl {
 namespace {
 
-template <class Rows, class AddPoint> void write_blend(const StepInput& input, Index v, Rows& rows, AddPoint&& add_point) {
+template <class Rows, class AddPoint>
+void write_blend(const StepInput& input, Index v, Rows& rows, AddPoint&& add_point) {
     const double lambda = input.options.lambda_at(v);
     rows.begin();
     rows.add(v, lambda);
@@ -15,7 +16,8 @@ template <class Rows, class AddPoint> void write_blend(const StepInput& input, I
     rows.end();
 }
 
-template <class Rows> void write_rows(const StepInput& input, Rows& rows) {
+template <class Rows>
+void write_rows(const StepInput& input, Rows& rows) {
     const Topology& topology = input.topology;
     for (Index v = 0; v < topology.vertex_count; ++v) write_blend(input, v, rows, [&](double weight) { add_vertex_point(input, v, weight, rows); });
     for (Index e = 0; e < topology.edge_count; ++e) {
@@ -57,7 +59,8 @@ void two_phase_faces(const StepInput& input, Refinement& refined) {
         const Index first = topology.edge_half_edge[e];
         for (const Index h : {first, topology.twin[first]})
             if (h >= 0)
-                faces.add({number.edge_point(h), number.far_edge_point(h), number.face_point(topology.next(h)), number.face_point(h)}, topology.half_edge_face[h]);
+                faces.add({number.edge_point(h), number.far_edge_point(h), number.face_point(topology.next(h)), number.face_point(h)},
+                          topology.half_edge_face[h]);
     }
     for (Index v = 0; v < topology.vertex_count; ++v) {
         const Index start = topology.vertex_half_edge[v];

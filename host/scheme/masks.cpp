@@ -58,9 +58,7 @@ double doo_sabin_weight(DooSabinMask mask, int m, int j) {
     return j == 1 || j == m - 1 ? 0.125 + rest : rest;
 }
 
-RingWeights curve_weights(Scheme scheme) {
-    return scheme == Scheme::doo_sabin ? RingWeights{6.0 / 8, 1.0 / 8, 0} : RingWeights{4.0 / 6, 1.0 / 6, 0};
-}
+RingWeights curve_weights(Scheme scheme) { return scheme == Scheme::doo_sabin ? RingWeights{6.0 / 8, 1.0 / 8, 0} : RingWeights{4.0 / 6, 1.0 / 6, 0}; }
 
 RingWeights blend(const RingWeights& weights, double lambda) {
     return {lambda + (1 - lambda) * weights.vertex, (1 - lambda) * weights.edge, (1 - lambda) * weights.diagonal};

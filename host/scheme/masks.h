@@ -40,8 +40,8 @@ double symmetric_scaling(Scheme scheme, int n, double lambda);
 /// Catmull-Clark (n - 3 + 2 alpha)/(n + 5), Loop (3 alpha_n - 1)/2, Doo-Sabin 1/4; two-phase: lambda + (1 - lambda) of it. n >= 3.
 double lambda_min_bound(const SchemeOptions& options, int n, double lambda);
 
-/// Catmull-Clark vertex with one sharp edge (dart), smooth vertex rule and midpoint on that edge: weights of the limit point on the umbrella after the first refinement,
-/// [V, E_0 .. E_(n-1), F_0 .. F_(n-1)] with E_0 the sharp edge: the left eigenvector, for the eigenvalue 1, of the umbrella's subdivision matrix.
+/// Catmull-Clark vertex with one sharp edge (dart), smooth vertex rule and midpoint on that edge: weights of the limit point on the umbrella after the first
+/// refinement, [V, E_0 .. E_(n-1), F_0 .. F_(n-1)] with E_0 the sharp edge: the left eigenvector, for the eigenvalue 1, of the umbrella's subdivision matrix.
 std::vector<double> catmull_clark_dart_weights(int n);
 
 /// Loop dart: the same on [V, E_0 .. E_(n-1)], before any refinement.

@@ -11,7 +11,8 @@ namespace {
 
 constexpr double pi = 3.14159265358979323846;
 
-/// A tube of quads with a bump, closed round and open at both ends: smooth rows of one valence, boundary curves; `triangles` splits every quad, a crease runs along it half way (a dart).
+/// A tube of quads with a bump, closed round and open at both ends: smooth rows of one valence, boundary curves; `triangles` splits every quad, a crease runs
+/// along it half way (a dart).
 PolygonMesh tube(int around, int along, bool triangles, bool polygons) {
     PolygonMesh mesh;
     mesh.vertex_count = around * along;
@@ -73,7 +74,10 @@ class Selftest {
 public:
     Selftest(std::shared_ptr<Context> context, const Case& c, int channels, Real real, std::function<void(const SelftestResult&)> report)
         : system_(make(std::move(context), c)), A_(*system_->A), plan_(A_.plan()), channels_(channels), real_(real), report_(std::move(report)) {
-        what_ = c.name + ", " + std::to_string(channels) + (channels == 1 ? " channel, " : " channels, ") + (real == Real::single ? "single" : real == Real::full ? "double" : "mixed");
+        what_ = c.name + ", " + std::to_string(channels) + (channels == 1 ? " channel, " : " channels, ") +
+                (real == Real::single ? "single"
+                 : real == Real::full ? "double"
+                                      : "mixed");
         // A row sums at most 60 products of numbers of size 1 and weights that sum to 1; pairs of floats hold 2^-48.
         const bool pairs = real == Real::wide && !A_.context().device().has_double;
         tolerance_ = 64 * (real == Real::single ? std::ldexp(1, -24) : pairs ? std::ldexp(1, -46) : std::ldexp(1, -52));
@@ -151,7 +155,8 @@ private:
         for (std::size_t k = 0; k < schedule.rows.size(); ++k)
             for (int c = 0; c < channels_; ++c) {
                 double r = m_[static_cast<std::size_t>(schedule.rows[k]) * channels_ + c];
-                for (std::uint32_t e = schedule.offsets[k]; e < schedule.offsets[k + 1]; ++e) r -= schedule.weights[e] * expected[static_cast<std::size_t>(schedule.columns[e]) * channels_ + c];
+                for (std::uint32_t e = schedule.offsets[k]; e < schedule.offsets[k + 1]; ++e)
+                    r -= schedule.weights[e] * expected[static_cast<std::size_t>(schedule.columns[e]) * channels_ + c];
                 expected[static_cast<std::size_t>(schedule.rows[k]) * channels_ + c] += r * schedule.inverse_diagonal[k];
             }
         compare("lcl_relax_rows", download(x), expected, 32 * tolerance_);
@@ -235,10 +240,12 @@ private:
             const std::vector<float> narrow(frame.begin(), frame.end());
             const bool as_double = real_ == Real::full;
             Buffer frame_buffer(A_.shared_context(), frame.size() * sizeof(double), "a self-test frame");
-            context.write(frame_buffer, 0, frame.size() * (as_double ? sizeof(double) : sizeof(float)), as_double ? static_cast<const void*>(frame.data()) : narrow.data(), "uploading a self-test frame");
-            launch(context, context.kernel("transfer", kernel, kernel_options(context, real_, block.width, 1) + " -D LCL_SOURCE=float"), {static_cast<std::size_t>(plan_.vertex_count), 0},
-                   static_cast<cl_uint>(plan_.vertex_count), static_cast<cl_ulong>(channels_), cl_ulong{0}, static_cast<cl_uint>(block.first), static_cast<cl_uint>(block.count),
-                   A_.vertex_order(), frame_buffer, into_field ? buffer : field.buffer(b), into_field ? field.buffer(b) : buffer);
+            context.write(frame_buffer, 0, frame.size() * (as_double ? sizeof(double) : sizeof(float)),
+                          as_double ? static_cast<const void*>(frame.data()) : narrow.data(), "uploading a self-test frame");
+            launch(context, context.kernel("transfer", kernel, kernel_options(context, real_, block.width, 1) + " -D LCL_SOURCE=float"),
+                   {static_cast<std::size_t>(plan_.vertex_count), 0}, static_cast<cl_uint>(plan_.vertex_count), static_cast<cl_ulong>(channels_), cl_ulong{0},
+                   static_cast<cl_uint>(block.first), static_cast<cl_uint>(block.count), A_.vertex_order(), frame_buffer, into_field ? buffer : field.buffer(b),
+                   into_field ? field.buffer(b) : buffer);
             context.finish();
         }
     }

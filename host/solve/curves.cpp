@@ -18,9 +18,11 @@ void solve_curves(const Plan& plan, const std::vector<double>& m, std::vector<do
         const LimitRow entry = plan_row(plan, run_of_row(plan, row), row);
         for (std::size_t k = 0; k < entry.columns.size(); ++k) {
             const Index column = entry.columns[k];
-            if (column >= part.end_row()) throw std::logic_error("a curve depends on a vertex that is not solved for before it");  // darts: callers iterate on the whole then
+            if (column >= part.end_row())
+                throw std::logic_error("a curve depends on a vertex that is not solved for before it");  // darts: callers iterate on the whole then
             if (column >= part.first_row) entries.emplace_back(i, column - part.first_row, entry.weights[k]);
-            else for (int c = 0; c < channels; ++c) right(i, c) -= entry.weights[k] * p[static_cast<std::size_t>(column) * channels + c];
+            else
+                for (int c = 0; c < channels; ++c) right(i, c) -= entry.weights[k] * p[static_cast<std::size_t>(column) * channels + c];
         }
     }
     Eigen::SparseMatrix<double> system(part.row_count, part.row_count);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// |A^-1|_inf of the smooth block by Higham and Tisseur's block method for 1-norms (SIAM J. Matrix Anal. Appl. 21, 2000), seven columns at a time: |A^-1|_inf = |A^-T|_1, and
-// A^-T = D A^-1 D^-1, so each product is one solve with A.
+// |A^-1|_inf of the smooth block by Higham and Tisseur's block method for 1-norms (SIAM J. Matrix Anal. Appl. 21, 2000), seven columns at a time: |A^-1|_inf =
+// |A^-T|_1, and A^-T = D A^-1 D^-1, so each product is one solve with A.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -14,19 +14,22 @@
 namespace lcl {
 namespace {
 
-constexpr int columns = 7;           // one field; with three, one matrix in twenty is judged more than 5 % too low
+constexpr int columns = 7;  // one field; with three, one matrix in twenty is judged more than 5 % too low
 constexpr int rounds = 5;
 constexpr int solve_iterations = 1000;
 constexpr double solve_tolerance = 1e-4;
-constexpr double margin = 1.03;      // the estimate lies below the norm, by less than this as a rule
+constexpr double margin = 1.03;  // the estimate lies below the norm, by less than this as a rule
 
 using Block = std::vector<double>;  // smooth rows x columns
 
 class InverseNormEstimate {
 public:
     explicit InverseNormEstimate(LimitSystem& system)
-        : A_(*system.A), part_(system.plan().smooth), scaling_(system.plan().scaling.begin() + part_.first_row, system.plan().scaling.begin() + part_.end_row()),
-          m_(A_.make_field(columns, Real::single)), x_(A_.make_field(columns, Real::single)) {
+        : A_(*system.A),
+          part_(system.plan().smooth),
+          scaling_(system.plan().scaling.begin() + part_.first_row, system.plan().scaling.begin() + part_.end_row()),
+          m_(A_.make_field(columns, Real::single)),
+          x_(A_.make_field(columns, Real::single)) {
         m_.fill_zero();
         visited_.assign(rows(), 0);
     }

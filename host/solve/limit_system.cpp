@@ -16,8 +16,8 @@ void find_weakest(const Topology& topology, const Features& features, LimitSyste
 
 }  // namespace
 
-std::unique_ptr<LimitSystem> make_limit_system(std::shared_ptr<Context> context, const PolygonMesh& mesh, const Topology& topology, const Features& features, const SchemeOptions& scheme,
-                                               PlanOptions plan_options) {
+std::unique_ptr<LimitSystem> make_limit_system(std::shared_ptr<Context> context, const PolygonMesh& mesh, const Topology& topology, const Features& features,
+                                               const SchemeOptions& scheme, PlanOptions plan_options) {
     const Objection objection = scheme_objection(topology, scheme);
     if (!objection.message.empty()) throw BadInput(objection.message, {objection.vertices, objection.faces});
     const LaunchShape shape = launch_shape(context->device());

@@ -14,12 +14,12 @@ constexpr double near_singular = 0.05;  ///< smallest eigenvalue below which a w
 
 /// What is known of the eigenvalues.
 struct Spectrum {
-    double bound = 0;         ///< proven lower bound; NaN where none is known
-    double estimate = 0;      ///< of lambda_min, never below the bound; NaN where A is not self-adjoint (darts)
-    double smooth = 0;        ///< estimate for the smooth block alone: what Chebyshev and W-PIA are set to
+    double bound = 0;     ///< proven lower bound; NaN where none is known
+    double estimate = 0;  ///< of lambda_min, never below the bound; NaN where A is not self-adjoint (darts)
+    double smooth = 0;    ///< estimate for the smooth block alone: what Chebyshev and W-PIA are set to
     bool singular = false, indefinite = false;
-    std::string message;      ///< one sentence with the cure where singular or indefinite; else empty
-    std::string warning;      ///< one sentence where lambda_min is so small that interpolation exaggerates noise; else empty
+    std::string message;  ///< one sentence with the cure where singular or indefinite; else empty
+    std::string warning;  ///< one sentence where lambda_min is so small that interpolation exaggerates noise; else empty
     std::vector<Index> vertices;
 };
 
@@ -31,28 +31,28 @@ struct InverseNorm {
 
 struct LimitSystem {
     SchemeOptions scheme;
-    double diagonal = 0;  ///< of the mesh's bounding box, model units
-    Objection singular;   ///< find_singular_component's
-    int lowest_valence = 0;       ///< of the smooth vertices, 0 without any
-    std::vector<Index> weakest;   ///< smooth vertices of that valence, the first ten: where small eigenvalues come from
+    double diagonal = 0;         ///< of the mesh's bounding box, model units
+    Objection singular;          ///< find_singular_component's
+    int lowest_valence = 0;      ///< of the smooth vertices, 0 without any
+    std::vector<Index> weakest;  ///< smooth vertices of that valence, the first ten: where small eigenvalues come from
     std::unique_ptr<DeviceOperator> A;
 
-    std::optional<Spectrum> spectrum;        // filled by spectrum_of
-    std::optional<InverseNorm> inverse_norm; // filled by inverse_norm_of
+    std::optional<Spectrum> spectrum;         // filled by spectrum_of
+    std::optional<InverseNorm> inverse_norm;  // filled by inverse_norm_of
     std::optional<Schedule> natural, coloured;
 
     const Plan& plan() const { return A->plan(); }
 };
 
 /// Builds everything. BadInput where the scheme does not fit the mesh.
-std::unique_ptr<LimitSystem> make_limit_system(std::shared_ptr<Context> context, const PolygonMesh& mesh, const Topology& topology, const Features& features, const SchemeOptions& scheme,
-                                               PlanOptions plan_options);
+std::unique_ptr<LimitSystem> make_limit_system(std::shared_ptr<Context> context, const PolygonMesh& mesh, const Topology& topology, const Features& features,
+                                               const SchemeOptions& scheme, PlanOptions plan_options);
 
 /// Bounds and estimates lambda_min by a short Lanczos run on the device: some 20 passes at the first call.
 const Spectrum& spectrum_of(LimitSystem& system);
 
-/// 1/min(2 a_ii - 1) where the smooth rows are diagonally dominant, else the block Hager-Higham estimate (Higham & Tisseur 2000), some ten short solves at the first call.
-/// Unsupported with darts.
+/// 1/min(2 a_ii - 1) where the smooth rows are diagonally dominant, else the block Hager-Higham estimate (Higham & Tisseur 2000), some ten short solves at the
+/// first call. Unsupported with darts.
 const InverseNorm& inverse_norm_of(LimitSystem& system);
 
 }  // namespace lcl

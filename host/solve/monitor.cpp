@@ -7,8 +7,9 @@
 namespace lcl {
 namespace {
 
-constexpr double growth_limit = 10;    // times the stage's first residual: stationary and Chebyshev iterations that converge on these operators were never seen to grow so far, darts included
-constexpr int patience = 30;           // iterations without ...
+constexpr double growth_limit = 10;  // times the stage's first residual: stationary and Chebyshev iterations that converge on these operators were never seen
+                                     // to grow so far, darts included
+constexpr int patience = 30;         // iterations without ...
 constexpr double least_progress = 0.99;  // ... this factor on the best residual are a stall
 
 }  // namespace
@@ -47,8 +48,12 @@ bool Monitor::stop(const ResidualNorms& residual) {
     history_.back() = iteration_ == 0 && exact_start_ >= 0 ? exact_start_ : residual.position;
     const double size = residual.position + residual.others;
     if (first_ < 0) first_ = size;
-    if (progress_ && !progress_(iteration_, residual.position, target_.position)) throw Cancelled("the solve was cancelled after " + std::to_string(iteration_) + " iterations");
-    const auto end = [&](Outcome outcome) { outcome_ = outcome; return true; };
+    if (progress_ && !progress_(iteration_, residual.position, target_.position))
+        throw Cancelled("the solve was cancelled after " + std::to_string(iteration_) + " iterations");
+    const auto end = [&](Outcome outcome) {
+        outcome_ = outcome;
+        return true;
+    };
     if (stage_.met_by(residual)) return end(Outcome::converged);
     if (!std::isfinite(size) || (!is_exact_ && !growth_is_allowed_ && size > growth_limit * first_)) return end(Outcome::diverged);
     if (iteration_ >= limit_) return end(Outcome::exhausted);

@@ -25,7 +25,8 @@ struct Target {
 
 class Monitor {
 public:
-    /// progress(iteration, residual, target) returns false to cancel (throws Cancelled); may be empty. is_exact: max_iterations are made whatever the residual does, unless it is no number.
+    /// progress(iteration, residual, target) returns false to cancel (throws Cancelled); may be empty. is_exact: max_iterations are made whatever the residual
+    /// does, unless it is no number.
     Monitor(int max_iterations, Target target, std::function<bool(int, double, double)> progress, bool is_exact = false)
         : max_iterations_(max_iterations), target_(target), progress_(std::move(progress)), is_exact_(is_exact) {}
 
@@ -35,7 +36,8 @@ public:
     void begin_stage(Target target, int limit = -1);
     /// Takes the residual of the iterate after iteration() iterations; true if the stage is over, and outcome() says why.
     bool stop(const ResidualNorms& residual);
-    /// The residual of P_0, where a direct solve of corners and curves comes before the iterations: it counts as the first of them, unless their number is exact.
+    /// The residual of P_0, where a direct solve of corners and curves comes before the iterations: it counts as the first of them, unless their number is
+    /// exact.
     void begin_with(const ResidualNorms& residual);
     /// One more iteration was made.
     void advance() { ++iteration_; }

@@ -34,7 +34,8 @@ void iterate_gauss_seidel(DeviceOperator& A, const Schedule& schedule, const Fie
     }
 }
 
-// x_1 = x_0 + r_0 / theta; x_(k+1) = x_k + rho_k rho_(k-1) (x_k - x_(k-1)) + 2 rho_k / delta r_k, rho_k = 1 / (2 theta / delta - rho_(k-1)), rho_0 = delta / theta
+// x_1 = x_0 + r_0 / theta; x_(k+1) = x_k + rho_k rho_(k-1) (x_k - x_(k-1)) + 2 rho_k / delta r_k, rho_k = 1 / (2 theta / delta - rho_(k-1)), rho_0 = delta /
+// theta
 void iterate_chebyshev(DeviceOperator& A, const Part& part, double low, const Field& m, Field& x, Monitor& monitor) {
     const double theta = (1 + low) / 2, delta = std::max((1 - low) / 2, 1e-12);
     double rho = delta / theta;
@@ -93,7 +94,8 @@ double smallest_ritz_value(const LanczosCoefficients& coefficients, int steps) {
         if (diagonal.empty()) continue;
         off.pop_back();
         Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver;
-        solver.computeFromTridiagonal(Eigen::Map<Eigen::VectorXd>(diagonal.data(), diagonal.size()), Eigen::Map<Eigen::VectorXd>(off.data(), off.size()), Eigen::EigenvaluesOnly);
+        solver.computeFromTridiagonal(Eigen::Map<Eigen::VectorXd>(diagonal.data(), diagonal.size()), Eigen::Map<Eigen::VectorXd>(off.data(), off.size()),
+                                      Eigen::EigenvaluesOnly);
         smallest = std::min(smallest, solver.eigenvalues()(0));
     }
     return smallest;

@@ -23,9 +23,8 @@ struct LanczosCoefficients {
     std::vector<ChannelValues> alpha, beta;
 };
 
-/// Conjugate gradients in <., .>_D on a part that is self-adjoint under D; every channel by itself. Rows outside the part keep x. Outcome::indefinite where <p, A p>_D <= 0
-/// (with coefficients asked for it goes on, as Lanczos may).
-/// One pass an iteration, and some three passes' traffic beside it.
+/// Conjugate gradients in <., .>_D on a part that is self-adjoint under D; every channel by itself. Rows outside the part keep x. Outcome::indefinite where <p,
+/// A p>_D <= 0 (with coefficients asked for it goes on, as Lanczos may). One pass an iteration, and some three passes' traffic beside it.
 void iterate_conjugate_gradients(DeviceOperator& A, const Part& part, const Field& m, Field& x, Monitor& monitor, LanczosCoefficients* coefficients = nullptr);
 
 /// Smallest eigenvalue of the Lanczos matrices that the first `steps` steps make, over all channels.

@@ -14,8 +14,8 @@ namespace lcl {
 namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-constexpr double stage_gain = 1e-4;     // what one stage of float sweeps on a correction gains at most: well above float's floor
-constexpr double wide_floor = 1e-13;    // residuals of wide fields, normalised, are rounding below
+constexpr double stage_gain = 1e-4;       // what one stage of float sweeps on a correction gains at most: well above float's floor
+constexpr double wide_floor = 1e-13;      // residuals of wide fields, normalised, are rounding below
 constexpr double chebyshev_least = 0.02;  // below, conjugate gradients adapt better than an interval does
 constexpr double estimate_margin = 0.95;  // Ritz values lie above lambda_min
 
@@ -34,7 +34,8 @@ public:
         const bool exact = options.exact_sweeps > 0;
         const Target target = exact ? Target{} : Target{options.tolerance * diagonal / unit, options.tolerance};
         std::function<bool(int, double, double)> progress;
-        if (options.progress) progress = [call = options.progress, unit](int iteration, double residual, double goal) { return call(iteration, residual * unit, goal * unit); };
+        if (options.progress)
+            progress = [call = options.progress, unit](int iteration, double residual, double goal) { return call(iteration, residual * unit, goal * unit); };
         monitor_ = std::make_unique<Monitor>(exact ? options.exact_sweeps : options.max_iterations, target, progress, exact);
         choose();
         if (solver_ == Solver::conjugate_gradients) monitor_->allow_growth();
@@ -81,7 +82,8 @@ public:
         const bool converged = report_.max_error <= options_.tolerance * diagonal && report_.channel_error <= options_.tolerance;
         const Plan& plan = system_.plan();
         const bool nothing_proven = plan.has_darts() || std::isnan(plan.lambda_min_bound);
-        const bool failed = monitor_->outcome() == Outcome::indefinite || (monitor_->outcome() == Outcome::diverged && nothing_proven && options_.solver == Solver::automatic);
+        const bool failed =
+            monitor_->outcome() == Outcome::indefinite || (monitor_->outcome() == Outcome::diverged && nothing_proven && options_.solver == Solver::automatic);
         report_.status = spectrum.indefinite || (failed && !converged) ? SolveStatus::indefinite
                          : spectrum.singular                           ? SolveStatus::singular
                          : converged                                   ? SolveStatus::converged
@@ -237,7 +239,8 @@ private:
             case Outcome::stalled:
                 if (monitor_->history().back() < wide_floor) return "the tolerance lies below what the arithmetic reaches" + after + ": use a larger one";
                 return "the residual no longer falls" + after + (options_.precision == Precision::single ? ": single precision ends here, use mixed" : other);
-            case Outcome::indefinite: return "a negative eigenvalue was met, the limit operator is indefinite: use a larger alpha (0.5; alpha auto does so) or a lambda above 0";
+            case Outcome::indefinite:
+                return "a negative eigenvalue was met, the limit operator is indefinite: use a larger alpha (0.5; alpha auto does so) or a lambda above 0";
             case Outcome::converged: return "the values are kept in float, which cannot hold them to this tolerance: use fields of double precision";
             case Outcome::exhausted: break;
         }
@@ -257,8 +260,8 @@ private:
     SolveReport report_;
 };
 
-/// Bound of the distance to the exact solution, part by part: fixed rows are off by their residual, curves by at most 1/(2 a_ii - 1) times it, the smooth block by |A^-1|_inf times its
-/// residual and what the error of the other rows adds to it. NaN with darts.
+/// Bound of the distance to the exact solution, part by part: fixed rows are off by their residual, curves by at most 1/(2 a_ii - 1) times it, the smooth block
+/// by |A^-1|_inf times its residual and what the error of the other rows adds to it. NaN with darts.
 double error_bound(LimitSystem& system, double max_error) {
     const Plan& plan = system.plan();
     if (plan.has_darts()) return nan;
@@ -300,7 +303,8 @@ void refuse_ghosts(const Plan& plan) {
 
 }  // namespace
 
-SolveReport solve_host(LimitSystem& system, const double* M, std::size_t stride, int channels, const SolveOptions& options, bool warm_start, double* P, std::size_t P_stride) {
+SolveReport solve_host(LimitSystem& system, const double* M, std::size_t stride, int channels, const SolveOptions& options, bool warm_start, double* P,
+                       std::size_t P_stride) {
     const Plan& plan = system.plan();
     refuse_ghosts(plan);
     const auto start = std::chrono::steady_clock::now();

@@ -17,13 +17,13 @@ enum class Solver { automatic, pia, wpia, jacobi, gauss_seidel, gauss_seidel_col
 struct SolveOptions {
     Solver solver = Solver::automatic;
     Precision precision = Precision::mixed;
-    double tolerance = 1e-6;   ///< of E_k relative to diagonal; of further channels relative to their range
+    double tolerance = 1e-6;  ///< of E_k relative to diagonal; of further channels relative to their range
     int max_iterations = 200;
-    int exact_sweeps = 0;      ///< > 0: so many iterations, no test
-    double weight = 0;         ///< W-PIA; 0: the best
-    bool keep_going = false;   ///< iterate although singular or indefinite
-    bool certify = false;      ///< fill surface_error_bound
-    double diagonal = 0;       ///< model units; 0: the mesh's
+    int exact_sweeps = 0;                               ///< > 0: so many iterations, no test
+    double weight = 0;                                  ///< W-PIA; 0: the best
+    bool keep_going = false;                            ///< iterate although singular or indefinite
+    bool certify = false;                               ///< fill surface_error_bound
+    double diagonal = 0;                                ///< model units; 0: the mesh's
     std::function<bool(int, double, double)> progress;  ///< (iteration, residual, target), model units; false cancels
 };
 
@@ -45,7 +45,8 @@ struct SolveReport {
 
 /// P with A P = M through host memory. M: vertex_count rows of `channels`, stride apart. P: P_0 where warm_start, else written only; P may be M.
 /// In P fixed and isolated rows hold M's values to the bit, warm start or not. Unsupported on operators with ghosts.
-SolveReport solve_host(LimitSystem& system, const double* M, std::size_t stride, int channels, const SolveOptions& options, bool warm_start, double* P, std::size_t P_stride);
+SolveReport solve_host(LimitSystem& system, const double* M, std::size_t stride, int channels, const SolveOptions& options, bool warm_start, double* P,
+                       std::size_t P_stride);
 
 /// The same on fields of one transform that stay on the device; P holds P_0 where warm_start. max_error is that of the values that P then
 /// holds, computed on the device in double (or pairs of floats).

@@ -12,7 +12,7 @@ namespace {
 constexpr int lanczos_steps = 16;
 constexpr int lanczos_steps_unproven = 48;  // valence 2: negative eigenvalues are looked for
 constexpr int lanczos_steps_most = 256;
-constexpr double rounding = 2e-5;           // of a Ritz value from float sweeps
+constexpr double rounding = 2e-5;  // of a Ritz value from float sweeps
 
 /// Numbers in [-1, 1) that are the same in every run: a start vector with a part of every eigenvector.
 std::vector<double> rough_vector(std::size_t size) {
@@ -47,7 +47,8 @@ double lanczos_estimate(DeviceOperator& A, int steps) {
         const LanczosCoefficients coefficients = lanczos(A, steps);
         const double value = smallest_ritz_value(coefficients, steps);
         const bool has_ended = static_cast<int>(coefficients.alpha.size()) < steps || value < -rounding;
-        if (has_ended || steps >= lanczos_steps_most || smallest_ritz_value(coefficients, steps * 3 / 4) - value <= 0.05 * std::fabs(value)) return std::min(1.0, value);
+        if (has_ended || steps >= lanczos_steps_most || smallest_ritz_value(coefficients, steps * 3 / 4) - value <= 0.05 * std::fabs(value))
+            return std::min(1.0, value);
     }
 }
 
@@ -59,7 +60,8 @@ double curve_bound(const LimitSystem& system) {
 }
 
 const char* cure(Scheme scheme) {
-    return scheme == Scheme::catmull_clark ? "use a larger alpha (0.5; alpha auto does so) or a lambda above 0" : "use another scheme, or remove vertices of valence 2";
+    return scheme == Scheme::catmull_clark ? "use a larger alpha (0.5; alpha auto does so) or a lambda above 0"
+                                           : "use another scheme, or remove vertices of valence 2";
 }
 
 void judge(const LimitSystem& system, Spectrum& spectrum) {
@@ -72,16 +74,20 @@ void judge(const LimitSystem& system, Spectrum& spectrum) {
     }
     if (spectrum.smooth >= near_singular) return;
     const std::string value = std::to_string(spectrum.smooth);
-    const std::string where = system.weakest.empty() ? "" : " (vertex " + std::to_string(system.weakest[0]) + " has valence " + std::to_string(system.lowest_valence) + ")";
+    const std::string where =
+        system.weakest.empty() ? "" : " (vertex " + std::to_string(system.weakest[0]) + " has valence " + std::to_string(system.lowest_valence) + ")";
     spectrum.vertices = system.weakest;
     spectrum.indefinite = spectrum.smooth < -rounding;
     spectrum.singular = !spectrum.indefinite && spectrum.smooth <= rounding;
     if (spectrum.indefinite)
-        spectrum.message = "the limit operator is indefinite, it has an eigenvalue of about " + value + " or less" + where + ", and no iteration is sure to converge: " + cure(system.scheme.scheme);
+        spectrum.message = "the limit operator is indefinite, it has an eigenvalue of about " + value + " or less" + where +
+                           ", and no iteration is sure to converge: " + cure(system.scheme.scheme);
     else if (spectrum.singular)
-        spectrum.message = "the limit operator is singular to working precision, its smallest eigenvalue is about " + value + where + ": " + cure(system.scheme.scheme);
+        spectrum.message =
+            "the limit operator is singular to working precision, its smallest eigenvalue is about " + value + where + ": " + cure(system.scheme.scheme);
     else
-        spectrum.warning = "the limit operator is nearly singular, its smallest eigenvalue is about " + value + where + ", so noise in the vertices is exaggerated: " + cure(system.scheme.scheme);
+        spectrum.warning = "the limit operator is nearly singular, its smallest eigenvalue is about " + value + where +
+                           ", so noise in the vertices is exaggerated: " + cure(system.scheme.scheme);
 }
 
 }  // namespace

@@ -33,6 +33,6 @@ private:
     std::size_t size_ = 0;
 };
 
-} // namespace limitcl
+}  // namespace limitcl
 
 #endif

@@ -13,10 +13,10 @@ namespace limitcl {
 
 /// What is known of an OpenCL device.
 struct DeviceInfo {
-    int index = -1; ///< place in devices(); -1: made from a cl_context of the caller
+    int index = -1;  ///< place in devices(); -1: made from a cl_context of the caller
     std::string platform, name, version, driver, vendor;
     bool is_gpu = false, is_cpu = false;
-    bool has_double = false; ///< double-precision arithmetic
+    bool has_double = false;  ///< double-precision arithmetic
     std::uint32_t compute_units = 0, clock_mhz = 0;
     std::uint64_t memory_bytes = 0, max_allocation_bytes = 0;
 };
@@ -25,25 +25,24 @@ enum class LogLevel { error = LCL_LOG_ERROR, warning = LCL_LOG_WARNING, info = L
 
 /// Options of a context; the default opens the default device.
 struct ContextOptions {
-    std::string device;          ///< index, part of a name, "cpu" or "gpu"; "": environment LIMITCL_DEVICE, else the fastest GPU, else the CPU
-    std::string cache_directory; ///< built programs; "": LIMITCL_CACHE_DIR, else the user's cache folder
+    std::string device;           ///< index, part of a name, "cpu" or "gpu"; "": environment LIMITCL_DEVICE, else the fastest GPU, else the CPU
+    std::string cache_directory;  ///< built programs; "": LIMITCL_CACHE_DIR, else the user's cache folder
     bool profiling = false;
-    std::function<void(LogLevel, const std::string&)> log; ///< empty: none. Called on the thread of the call; what it throws is dropped
-    LogLevel log_level = LogLevel::warning;                ///< messages up to this level
+    std::function<void(LogLevel, const std::string&)> log;  ///< empty: none. Called on the thread of the call; what it throws is dropped
+    LogLevel log_level = LogLevel::warning;                 ///< messages up to this level
 };
 
 /// Result of one kernel's self-test.
 struct SelftestResult {
     std::string kernel, what;
-    double difference = 0; ///< largest difference to the plain double-precision host operator
-    double tolerance = 0;  ///< what is allowed
+    double difference = 0;  ///< largest difference to the plain double-precision host operator
+    double tolerance = 0;   ///< what is allowed
     bool passed = false;
 };
 
 namespace detail {
 
-inline DeviceInfo from_c(const lcl_device_info& c)
-{
+inline DeviceInfo from_c(const lcl_device_info& c) {
     DeviceInfo info;
     info.index = c.index;
     info.platform = c.platform, info.name = c.name, info.version = c.version, info.driver = c.driver, info.vendor = c.vendor;
@@ -53,11 +52,10 @@ inline DeviceInfo from_c(const lcl_device_info& c)
     return info;
 }
 
-} // namespace detail
+}  // namespace detail
 
 /// All OpenCL devices of all platforms, in the order of their indices.
-inline std::vector<DeviceInfo> devices()
-{
+inline std::vector<DeviceInfo> devices() {
     std::vector<DeviceInfo> list;
     for (std::int32_t i = 0; i < lcl_device_count(); ++i) {
         lcl_device_info info = LCL_DEVICE_INFO_INIT;
@@ -95,8 +93,7 @@ private:
     ContextHandle handle_;
 };
 
-inline Context::Context(const ContextOptions& options)
-{
+inline Context::Context(const ContextOptions& options) {
     lcl_context_options c = LCL_CONTEXT_OPTIONS_INIT;
     c.profiling = options.profiling;
     c.device = options.device.empty() ? nullptr : options.device.c_str();
@@ -112,36 +109,31 @@ inline Context::Context(const ContextOptions& options)
     handle_ = ContextHandle(context);
 }
 
-inline DeviceInfo Context::device() const
-{
+inline DeviceInfo Context::device() const {
     lcl_device_info info = LCL_DEVICE_INFO_INIT;
     check(lcl_context_get_device(get(), &info));
     return detail::from_c(info);
 }
 
-inline std::vector<SelftestResult> Context::selftest() const
-{
+inline std::vector<SelftestResult> Context::selftest() const {
     std::vector<SelftestResult> results;
     const lcl_selftest_callback collect = [](void* user, const char* kernel, const char* what, double difference, double tolerance, std::int32_t passed) {
         static_cast<std::vector<SelftestResult>*>(user)->push_back({kernel, what, difference, tolerance, passed != 0});
     };
     const lcl_status status = lcl_context_selftest(get(), collect, &results);
     bool disagreement = false;
-    for (const SelftestResult& result : results)
-        disagreement = disagreement || !result.passed;
-    if (!disagreement)
-        check(status);
+    for (const SelftestResult& result : results) disagreement = disagreement || !result.passed;
+    if (!disagreement) check(status);
     return results;
 }
 
-inline void Context::forward_log(void* user, std::int32_t level, const char* message)
-{
+inline void Context::forward_log(void* user, std::int32_t level, const char* message) {
     try {
         (*static_cast<Log*>(user))(static_cast<LogLevel>(level), message);
-    } catch (...) { // an exception must not pass through C
+    } catch (...) {  // an exception must not pass through C
     }
 }
 
-} // namespace limitcl
+}  // namespace limitcl
 
 #endif

@@ -35,8 +35,7 @@ private:
     std::vector<std::int32_t> vertices_, faces_;
 };
 
-inline Error Error::last(lcl_status status)
-{
+inline Error Error::last(lcl_status status) {
     const char* sentence = lcl_last_error();
     std::vector<std::int32_t> vertices(lcl_last_error_vertices(nullptr, 0)), faces(lcl_last_error_faces(nullptr, 0));
     lcl_last_error_vertices(vertices.data(), vertices.size());
@@ -45,15 +44,13 @@ inline Error Error::last(lcl_status status)
 }
 
 /// Throws Error unless `status` is LCL_OK. For code that mixes both APIs.
-inline void check(lcl_status status)
-{
-    if (status != LCL_OK)
-        throw Error::last(status);
+inline void check(lcl_status status) {
+    if (status != LCL_OK) throw Error::last(status);
 }
 
 /// Version of the library that runs, for example "0.1.0".
 inline std::string version() { return lcl_version_string(); }
 
-} // namespace limitcl
+}  // namespace limitcl
 
 #endif

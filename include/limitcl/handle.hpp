@@ -16,14 +16,11 @@ public:
     Handle() = default;
     /// Takes over the reference that the caller has.
     explicit Handle(C handle) : handle_(handle) {}
-    Handle(const Handle& other) : handle_(other.handle_)
-    {
-        if (handle_)
-            Retain(handle_);
+    Handle(const Handle& other) : handle_(other.handle_) {
+        if (handle_) Retain(handle_);
     }
     Handle(Handle&& other) noexcept : handle_(std::exchange(other.handle_, nullptr)) {}
-    Handle& operator=(Handle other) noexcept
-    {
+    Handle& operator=(Handle other) noexcept {
         std::swap(handle_, other.handle_);
         return *this;
     }
@@ -41,6 +38,6 @@ using MeshHandle = Handle<lcl_mesh, lcl_mesh_retain, lcl_mesh_release>;
 using OperatorHandle = Handle<lcl_operator, lcl_operator_retain, lcl_operator_release>;
 using FieldHandle = Handle<lcl_field, lcl_field_retain, lcl_field_release>;
 
-} // namespace limitcl
+}  // namespace limitcl
 
 #endif

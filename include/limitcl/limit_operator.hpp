@@ -9,24 +9,24 @@
 namespace limitcl {
 
 enum class Precision {
-    mixed = LCL_PRECISION_MIXED, ///< float sweeps, residuals and corrections in double or float pairs
+    mixed = LCL_PRECISION_MIXED,  ///< float sweeps, residuals and corrections in double or float pairs
     single = LCL_PRECISION_SINGLE,
-    full = LCL_PRECISION_DOUBLE ///< double; Error LCL_ERROR_UNSUPPORTED where the device has none
+    full = LCL_PRECISION_DOUBLE  ///< double; Error LCL_ERROR_UNSUPPORTED where the device has none
 };
 
 /// What can be said of the spectrum of A before solving.
 struct Diagnosis {
-    double lambda_min_bound = 0;    ///< proven lower bound of the smallest eigenvalue; NaN where none is known
-    double lambda_min_estimate = 0; ///< from a short Lanczos run; NaN where A is not self-adjoint (darts)
+    double lambda_min_bound = 0;     ///< proven lower bound of the smallest eigenvalue; NaN where none is known
+    double lambda_min_estimate = 0;  ///< from a short Lanczos run; NaN where A is not self-adjoint (darts)
     bool singular = false, indefinite = false;
-    std::string reason; ///< one sentence with the cure; "" if all is well
+    std::string reason;  ///< one sentence with the cure; "" if all is well
     std::vector<std::int32_t> vertices;
 };
 
 /// Bound of |A^-1|_inf.
 struct InverseNorm {
     double norm = 0;
-    bool proven = false; ///< a bound by diagonal dominance; else an estimate
+    bool proven = false;  ///< a bound by diagonal dominance; else an estimate
 };
 
 /// The limit operator: row i gives the limit point of vertex i on the subdivision surface of the mesh. Rows sum to one. Copies share it.
@@ -93,15 +93,13 @@ private:
 inline void apply(const LimitOperator& A, const Field& x, Field& y) { check(lcl_operator_apply(A.get(), x.get(), y.get())); }
 
 /// y = a x + b (M - A x), and waits for max_i |M - A x|_i over x, y, z, model units. PIA: a = b = 1; W-PIA: b = w. x and y must differ. One pass.
-inline double step(const LimitOperator& A, double a, double b, const Field& M, const Field& x, Field& y)
-{
+inline double step(const LimitOperator& A, double a, double b, const Field& M, const Field& x, Field& y) {
     double residual = 0;
     check(lcl_operator_step(A.get(), a, b, 0.0, M.get(), x.get(), nullptr, y.get(), 0, -1, &residual));
     return residual;
 }
 
-inline LimitOperator::LimitOperator(const Context& context, const Mesh& mesh, const SchemeOptions& options) : context_(context)
-{
+inline LimitOperator::LimitOperator(const Context& context, const Mesh& mesh, const SchemeOptions& options) : context_(context) {
     if (!options.lambda_per_vertex.empty() && options.lambda_per_vertex.size() != static_cast<std::size_t>(mesh.vertex_count()))
         throw Error(LCL_ERROR_INVALID_ARGUMENT, "lambda_per_vertex has " + std::to_string(options.lambda_per_vertex.size()) + " values, the mesh has " +
                                                     std::to_string(mesh.vertex_count()) + " vertices");
@@ -111,35 +109,30 @@ inline LimitOperator::LimitOperator(const Context& context, const Mesh& mesh, co
     handle_ = OperatorHandle(A);
 }
 
-inline SchemeOptions LimitOperator::scheme() const
-{
+inline SchemeOptions LimitOperator::scheme() const {
     lcl_scheme_options c = LCL_SCHEME_OPTIONS_INIT;
     check(lcl_operator_get_scheme(get(), &c));
     return SchemeOptions::from_c(c);
 }
 
-inline std::vector<std::pair<std::int32_t, double>> LimitOperator::row(int vertex) const
-{
+inline std::vector<std::pair<std::int32_t, double>> LimitOperator::row(int vertex) const {
     std::size_t size = 0;
     check(lcl_operator_get_row(get(), vertex, nullptr, nullptr, 0, &size));
     std::vector<std::int32_t> columns(size);
     std::vector<double> weights(size);
     check(lcl_operator_get_row(get(), vertex, columns.data(), weights.data(), size, &size));
     std::vector<std::pair<std::int32_t, double>> row(size);
-    for (std::size_t k = 0; k < size; ++k)
-        row[k] = {columns[k], weights[k]};
+    for (std::size_t k = 0; k < size; ++k) row[k] = {columns[k], weights[k]};
     return row;
 }
 
-inline Diagnosis LimitOperator::diagnose() const
-{
+inline Diagnosis LimitOperator::diagnose() const {
     lcl_diagnosis c = LCL_DIAGNOSIS_INIT;
     check(lcl_operator_diagnose(get(), &c));
     return {c.lambda_min_bound, c.lambda_min_estimate, c.singular != 0, c.indefinite != 0, c.reason, {c.vertices, c.vertices + c.vertex_count}};
 }
 
-inline InverseNorm LimitOperator::inverse_norm() const
-{
+inline InverseNorm LimitOperator::inverse_norm() const {
     InverseNorm result;
     std::int32_t proven = 0;
     check(lcl_operator_inverse_norm(get(), &result.norm, &proven));
@@ -149,71 +142,62 @@ inline InverseNorm LimitOperator::inverse_norm() const
 
 namespace detail {
 
-inline void require_values(const LimitOperator& A, std::size_t size, int channels, const char* what)
-{
+inline void require_values(const LimitOperator& A, std::size_t size, int channels, const char* what) {
     const std::size_t expected = static_cast<std::size_t>(A.vertex_count()) * static_cast<std::size_t>(channels < 0 ? 0 : channels);
     if (channels < 1 || size != expected)
         throw Error(LCL_ERROR_INVALID_ARGUMENT, std::string(what) + ": " + std::to_string(size) + " values were given, " + std::to_string(A.vertex_count()) +
                                                     " vertices with " + std::to_string(channels) + " channels need " + std::to_string(expected));
 }
 
-} // namespace detail
+}  // namespace detail
 
-inline std::vector<double> LimitOperator::limit_points(ArrayView<double> points, int channels, Precision precision) const
-{
+inline std::vector<double> LimitOperator::limit_points(ArrayView<double> points, int channels, Precision precision) const {
     detail::require_values(*this, points.size(), channels, "points");
     std::vector<double> out(points.size());
     check(lcl_limit_points(get(), points.data(), 0, channels, static_cast<lcl_precision>(precision), out.data(), 0));
     return out;
 }
 
-inline Field::Field(const LimitOperator& A, int channels, Precision precision) : operator_(A)
-{
+inline Field::Field(const LimitOperator& A, int channels, Precision precision) : operator_(A) {
     lcl_field field = nullptr;
     check(lcl_field_create(A.get(), channels, static_cast<lcl_precision>(precision), &field));
     handle_ = FieldHandle(field);
 }
 
-inline void Field::require_size(std::size_t size, std::size_t rows) const
-{
+inline void Field::require_size(std::size_t size, std::size_t rows) const {
     const std::size_t expected = rows * static_cast<std::size_t>(channels());
     if (size != expected)
         throw Error(LCL_ERROR_INVALID_ARGUMENT,
                     std::to_string(size) + " values were given, " + std::to_string(rows) + " rows of the field need " + std::to_string(expected));
 }
 
-inline void Field::upload(ArrayView<double> values)
-{
+inline void Field::upload(ArrayView<double> values) {
     require_size(values.size(), static_cast<std::size_t>(operator_.vertex_count()));
     check(lcl_field_upload(get(), values.data(), LCL_TYPE_DOUBLE, 0));
 }
 
-inline void Field::upload(ArrayView<float> values)
-{
+inline void Field::upload(ArrayView<float> values) {
     require_size(values.size(), static_cast<std::size_t>(operator_.vertex_count()));
     check(lcl_field_upload(get(), values.data(), LCL_TYPE_FLOAT, 0));
 }
 
-inline std::vector<double> Field::download() const
-{
+inline std::vector<double> Field::download() const {
     std::vector<double> values(static_cast<std::size_t>(operator_.vertex_count()) * static_cast<std::size_t>(channels()));
     check(lcl_field_download(get(), values.data(), LCL_TYPE_DOUBLE, 0));
     return values;
 }
 
-inline std::vector<double> Field::read_vertices(ArrayView<std::int32_t> vertices) const
-{
+inline std::vector<double> Field::read_vertices(ArrayView<std::int32_t> vertices) const {
     std::vector<double> values(vertices.size() * static_cast<std::size_t>(channels()));
     check(lcl_field_read_vertices(get(), vertices.data(), vertices.size(), values.data()));
     return values;
 }
 
-inline void Field::write_vertices(ArrayView<std::int32_t> vertices, ArrayView<double> values)
-{
+inline void Field::write_vertices(ArrayView<std::int32_t> vertices, ArrayView<double> values) {
     require_size(values.size(), vertices.size());
     check(lcl_field_write_vertices(get(), vertices.data(), vertices.size(), values.data()));
 }
 
-} // namespace limitcl
+}  // namespace limitcl
 
 #endif

@@ -73,8 +73,8 @@ typedef int32_t lcl_status;
 #define LCL_ERROR_CANCELLED (-1107)        /**< a progress callback returned 0 */
 #define LCL_ERROR_INTERNAL (-1108)         /**< a defect of the library: please report the sentence */
 /* The next three are results: outputs and report are filled with what there is. */
-#define LCL_ERROR_SINGULAR (-1110)      /**< A has no inverse: interpolation is not possible with these parameters; the report names the vertices and the cure */
-#define LCL_ERROR_INDEFINITE (-1111)    /**< A has negative eigenvalues (valence 2): none of the iterations is sure to converge, and none did */
+#define LCL_ERROR_SINGULAR (-1110)   /**< A has no inverse: interpolation is not possible with these parameters; the report names the vertices and the cure */
+#define LCL_ERROR_INDEFINITE (-1111) /**< A has negative eigenvalues (valence 2): none of the iterations is sure to converge, and none did */
 #define LCL_ERROR_NOT_CONVERGED (-1112) /**< the tolerance was not reached */
 
 /** Name of a status: "LCL_ERROR_SINGULAR", "CL_OUT_OF_RESOURCES". Never NULL. */
@@ -97,14 +97,15 @@ typedef struct lcl_task_s* lcl_task;         /**< a call that runs beside the ca
 
 typedef struct lcl_device_info {
     uint32_t struct_size;
-    int32_t index;             /**< place in the list, -1 for a caller's context */
+    int32_t index; /**< place in the list, -1 for a caller's context */
     char platform[128], name[256], version[128], driver[128], vendor[128];
     int32_t is_gpu, is_cpu;
-    int32_t has_double;        /**< double-precision arithmetic */
+    int32_t has_double; /**< double-precision arithmetic */
     uint32_t compute_units, clock_mhz;
     uint64_t memory_bytes, max_allocation_bytes;
 } lcl_device_info;
-#define LCL_DEVICE_INFO_INIT { (uint32_t)sizeof(lcl_device_info), 0, "", "", "", "", "", 0, 0, 0, 0, 0, 0, 0 }
+#define LCL_DEVICE_INFO_INIT \
+    { (uint32_t)sizeof(lcl_device_info), 0, "", "", "", "", "", 0, 0, 0, 0, 0, 0, 0 }
 
 /** Number of OpenCL devices of all platforms; 0 if there is none. */
 LCL_API int32_t lcl_device_count(void);
@@ -115,15 +116,16 @@ typedef void (*lcl_log_callback)(void* user, int32_t level, const char* message)
 
 typedef struct lcl_context_options {
     uint32_t struct_size;
-    int32_t profiling;           /**< 1: queues with profiling */
-    const char* device;          /**< index, part of a name (any case, the first that matches), "cpu" or "gpu"; NULL: environment LIMITCL_DEVICE, else the GPU with
-                                      the largest compute units x clock, else the CPU */
+    int32_t profiling;  /**< 1: queues with profiling */
+    const char* device; /**< index, part of a name (any case, the first that matches), "cpu" or "gpu"; NULL: environment LIMITCL_DEVICE, else the GPU with
+                             the largest compute units x clock, else the CPU */
     const char* cache_directory; /**< built programs; NULL: LIMITCL_CACHE_DIR, else the user's cache folder; not writable: no cache, no error */
     lcl_log_callback log;        /**< NULL: none; called on the thread of the call, with no lock held */
     void* log_user;
-    int32_t log_level;           /**< messages up to this level */
+    int32_t log_level; /**< messages up to this level */
 } lcl_context_options;
-#define LCL_CONTEXT_OPTIONS_INIT { (uint32_t)sizeof(lcl_context_options), 0, NULL, NULL, NULL, NULL, 0 }
+#define LCL_CONTEXT_OPTIONS_INIT \
+    { (uint32_t)sizeof(lcl_context_options), 0, NULL, NULL, NULL, NULL, 0 }
 
 /** Opens a device. LCL_ERROR_NO_DEVICE names what was asked for, what there is, and how to install one. limitcl_opencl.h makes one from a cl_context. */
 LCL_API lcl_status lcl_context_create(const lcl_context_options* options, lcl_context* context);
@@ -138,13 +140,19 @@ LCL_API uint64_t lcl_context_allocated_bytes(lcl_context context);
 
 /** Called by the self-test once per kernel: the largest difference to the plain double-precision host operator, and what is allowed. */
 typedef void (*lcl_selftest_callback)(void* user, const char* kernel, const char* what, double difference, double tolerance, int32_t passed);
-/** Runs every kernel on built-in meshes against the plain host operator. LCL_ERROR_INTERNAL if one disagrees; all are run in any case. Some seconds at first. */
+/** Runs every kernel on built-in meshes against the plain host operator. LCL_ERROR_INTERNAL if one disagrees; all are run in any case. Some seconds at first.
+ */
 LCL_API lcl_status lcl_context_selftest(lcl_context context, lcl_selftest_callback callback, void* user);
 
 /* ---------------------------------------------------------------- meshes */
 
 typedef enum lcl_format {
-    LCL_FORMAT_BY_ENDING = 0, LCL_FORMAT_OBJ = 1, LCL_FORMAT_OFF = 2, LCL_FORMAT_PLY = 3, LCL_FORMAT_STL = 4, LCL_FORMAT_OM = 5
+    LCL_FORMAT_BY_ENDING = 0,
+    LCL_FORMAT_OBJ = 1,
+    LCL_FORMAT_OFF = 2,
+    LCL_FORMAT_PLY = 3,
+    LCL_FORMAT_STL = 4,
+    LCL_FORMAT_OM = 5
 } lcl_format;
 
 typedef enum lcl_type { LCL_TYPE_DOUBLE = 0, LCL_TYPE_FLOAT = 1 } lcl_type;
@@ -153,14 +161,15 @@ typedef enum lcl_type { LCL_TYPE_DOUBLE = 0, LCL_TYPE_FLOAT = 1 } lcl_type;
 typedef struct lcl_mesh_data {
     uint32_t struct_size;
     int32_t vertex_count, face_count;
-    const int32_t* face_degrees;  /**< face_count sides; NULL: all faces have `uniform_degree` */
+    const int32_t* face_degrees; /**< face_count sides; NULL: all faces have `uniform_degree` */
     int32_t uniform_degree;
     const int32_t* face_vertices; /**< sum of the degrees */
     const void* points;           /**< vertex_count points of three values, model units */
     lcl_type point_type;
-    size_t point_stride;          /**< values from one point to the next; 0: 3 */
+    size_t point_stride; /**< values from one point to the next; 0: 3 */
 } lcl_mesh_data;
-#define LCL_MESH_DATA_INIT { (uint32_t)sizeof(lcl_mesh_data), 0, 0, NULL, 0, NULL, NULL, LCL_TYPE_DOUBLE, 0 }
+#define LCL_MESH_DATA_INIT \
+    { (uint32_t)sizeof(lcl_mesh_data), 0, 0, NULL, 0, NULL, NULL, LCL_TYPE_DOUBLE, 0 }
 
 /** Copies a mesh from arrays. Counts and pointers are checked here; the mesh itself where a function needs it sound (or by lcl_mesh_validate). */
 LCL_API lcl_status lcl_mesh_create(const lcl_mesh_data* data, lcl_mesh* mesh);
@@ -168,7 +177,8 @@ LCL_API lcl_status lcl_mesh_create(const lcl_mesh_data* data, lcl_mesh* mesh);
 LCL_API lcl_status lcl_mesh_read(const char* path, lcl_format format, lcl_mesh* mesh);
 /** The same from bytes in memory; `name` stands in messages. */
 LCL_API lcl_status lcl_mesh_read_memory(const void* bytes, size_t size, lcl_format format, const char* name, lcl_mesh* mesh);
-/** Writes completely or not at all, a sound mesh. Counts as a change of the mesh: what the format cannot hold is added to its notes of kind LCL_NOTE_WARNING. path "-" is standard output and needs a format. */
+/** Writes completely or not at all, a sound mesh. Counts as a change of the mesh: what the format cannot hold is added to its notes of kind LCL_NOTE_WARNING.
+ * path "-" is standard output and needs a format. */
 LCL_API lcl_status lcl_mesh_write(lcl_mesh mesh, const char* path, lcl_format format);
 /** The format that a path's ending names. */
 LCL_API lcl_status lcl_format_of_path(const char* path, lcl_format* format);
@@ -199,27 +209,30 @@ typedef enum lcl_boundary {
 typedef struct lcl_features {
     uint32_t struct_size;
     lcl_boundary boundary;
-    const int32_t* creases;      /**< crease_count pairs of vertices, added to those of the file */
+    const int32_t* creases; /**< crease_count pairs of vertices, added to those of the file */
     size_t crease_count;
-    const int32_t* corners;      /**< corner_count vertices that stay, added to those of the file */
+    const int32_t* corners; /**< corner_count vertices that stay, added to those of the file */
     size_t corner_count;
     double crease_angle_degrees; /**< > 0: edges whose face normals (Newell) differ by more are creases */
 } lcl_features;
-#define LCL_FEATURES_INIT { (uint32_t)sizeof(lcl_features), LCL_BOUNDARY_DEFAULT, NULL, 0, NULL, 0, 0.0 }
+#define LCL_FEATURES_INIT \
+    { (uint32_t)sizeof(lcl_features), LCL_BOUNDARY_DEFAULT, NULL, 0, NULL, 0, 0.0 }
 
 /** Adds sharp features and sets the boundary rule; operators made before keep what they were made with. */
 LCL_API lcl_status lcl_mesh_add_features(lcl_mesh mesh, const lcl_features* features);
-/** The resolved features: crease edges off the boundary and corners, however they were found. Either array may be NULL; counts may be NULL. creases: 2 values an edge. */
+/** The resolved features: crease edges off the boundary and corners, however they were found. Either array may be NULL; counts may be NULL. creases: 2 values
+ * an edge. */
 LCL_API lcl_status lcl_mesh_get_features(lcl_mesh mesh, lcl_boundary* boundary, int32_t* creases, size_t* crease_count, int32_t* corners, size_t* corner_count);
 
 typedef struct lcl_mesh_info {
     uint32_t struct_size;
     int32_t vertices, faces, edges, boundary_edges, boundary_loops, components, isolated_vertices;
-    int32_t creases;  /**< sharp edges off the boundary */
-    int32_t corners;  /**< vertices that stay, isolated ones not counted */
-    double diagonal;  /**< of the bounding box of the vertices that a face uses, model units */
+    int32_t creases; /**< sharp edges off the boundary */
+    int32_t corners; /**< vertices that stay, isolated ones not counted */
+    double diagonal; /**< of the bounding box of the vertices that a face uses, model units */
 } lcl_mesh_info;
-#define LCL_MESH_INFO_INIT { (uint32_t)sizeof(lcl_mesh_info), 0, 0, 0, 0, 0, 0, 0, 0, 0, 0.0 }
+#define LCL_MESH_INFO_INIT \
+    { (uint32_t)sizeof(lcl_mesh_info), 0, 0, 0, 0, 0, 0, 0, 0, 0, 0.0 }
 
 /** Counts. On a mesh that is not sound, edges and what follows from them are -1 and the call still succeeds. */
 LCL_API lcl_status lcl_mesh_get_info(lcl_mesh mesh, lcl_mesh_info* info);
@@ -227,8 +240,8 @@ typedef enum lcl_histogram { LCL_HISTOGRAM_FACE_DEGREES = 0, LCL_HISTOGRAM_VALEN
 /** Keys in ascending order with their counts; `size` receives the number of all. Valences need a sound mesh (LCL_ERROR_BAD_INPUT). */
 LCL_API lcl_status lcl_mesh_get_histogram(lcl_mesh mesh, lcl_histogram which, int32_t* keys, int32_t* counts, size_t capacity, size_t* size);
 
-/** LCL_OK if the mesh is manifold, consistently oriented and finite, no face has fewer than three corners or a vertex twice, and the file had no tag that is refused
- *  (semi-sharp creases, `t interpolateboundary` 0 with a boundary); else LCL_ERROR_BAD_INPUT with the first reason. Linear time, remembered. */
+/** LCL_OK if the mesh is manifold, consistently oriented and finite, no face has fewer than three corners or a vertex twice, and the file had no tag that is
+ * refused (semi-sharp creases, `t interpolateboundary` 0 with a boundary); else LCL_ERROR_BAD_INPUT with the first reason. Linear time, remembered. */
 LCL_API lcl_status lcl_mesh_validate(lcl_mesh mesh);
 
 typedef struct lcl_defect {
@@ -239,7 +252,8 @@ typedef struct lcl_defect {
     int32_t vertices[10], faces[10]; /**< the first ten */
     int32_t vertex_count, face_count;
 } lcl_defect;
-#define LCL_DEFECT_INIT { (uint32_t)sizeof(lcl_defect), NULL, NULL, 0, { 0 }, { 0 }, 0, 0 }
+#define LCL_DEFECT_INIT \
+    { (uint32_t)sizeof(lcl_defect), NULL, NULL, 0, {0}, {0}, 0, 0 }
 LCL_API int32_t lcl_mesh_defect_count(lcl_mesh mesh);
 LCL_API lcl_status lcl_mesh_get_defect(lcl_mesh mesh, int32_t index, lcl_defect* defect);
 
@@ -248,7 +262,8 @@ LCL_API int32_t lcl_mesh_property_count(lcl_mesh mesh);
 LCL_API const char* lcl_mesh_property_name(lcl_mesh mesh, int32_t index);
 LCL_API int32_t lcl_mesh_property_is_colour(lcl_mesh mesh, int32_t index);
 LCL_API lcl_status lcl_mesh_get_property(lcl_mesh mesh, int32_t index, double* values /* vertex_count */);
-/** Sets the values of a property that is there (`name` exists) or adds one of type double. An integer property becomes double, with a note, where it could not hold them. */
+/** Sets the values of a property that is there (`name` exists) or adds one of type double. An integer property becomes double, with a note, where it could not
+ * hold them. */
 LCL_API lcl_status lcl_mesh_set_property(lcl_mesh mesh, const char* name, const double* values);
 
 typedef enum lcl_note {
@@ -262,32 +277,40 @@ LCL_API const char* lcl_mesh_note(lcl_mesh mesh, lcl_note kind, int32_t index);
 
 /* ---------------------------------------------------------------- schemes */
 
-typedef enum lcl_scheme { LCL_SCHEME_DEFAULT = 0 /**< Loop if all faces are triangles, else Catmull-Clark */, LCL_SCHEME_CATMULL_CLARK = 1, LCL_SCHEME_LOOP = 2, LCL_SCHEME_DOO_SABIN = 3 } lcl_scheme;
+typedef enum lcl_scheme {
+    LCL_SCHEME_DEFAULT = 0 /**< Loop if all faces are triangles, else Catmull-Clark */,
+    LCL_SCHEME_CATMULL_CLARK = 1,
+    LCL_SCHEME_LOOP = 2,
+    LCL_SCHEME_DOO_SABIN = 3
+} lcl_scheme;
 typedef enum lcl_mask { LCL_MASK_CATMULL = 0 /**< Doo-Sabin paper, chapter 4 */, LCL_MASK_CLASSIC = 1 /**< Doo & Sabin 1978 */ } lcl_mask;
 
 typedef struct lcl_scheme_options {
     uint32_t struct_size;
     lcl_scheme scheme;
-    lcl_mask mask;            /**< Doo-Sabin */
-    double alpha;             /**< Catmull-Clark, 0 to 1: rule of the first refinement (mesh expansion paper) */
-    int32_t alpha_auto;       /**< 1 (for operators; alpha is left at 0): alpha is 0, or 0.5 where 0 is singular, indefinite, or has an estimated lambda_min below 0.05 */
-    double lambda;            /**< Catmull-Clark, 0 to 1: two-phase blend ratio, A_lambda = lambda E + (1 - lambda) A (two-phase paper, eq. 5) */
+    lcl_mask mask; /**< Doo-Sabin */
+    double alpha;  /**< Catmull-Clark, 0 to 1: rule of the first refinement (mesh expansion paper) */
+    int32_t
+        alpha_auto; /**< 1 (for operators; alpha is left at 0): alpha is 0, or 0.5 where 0 is singular, indefinite, or has an estimated lambda_min below 0.05 */
+    double lambda;  /**< Catmull-Clark, 0 to 1: two-phase blend ratio, A_lambda = lambda E + (1 - lambda) A (two-phase paper, eq. 5) */
     const double* lambda_per_vertex; /**< NULL, or one ratio a vertex; rules over lambda */
-    const int32_t* subset;    /**< NULL, or the vertices to interpolate: the others keep their control points (identity rows) */
+    const int32_t* subset;           /**< NULL, or the vertices to interpolate: the others keep their control points (identity rows) */
     size_t subset_count;
-    const int32_t* owned;     /**< NULL, or the vertices that get rows: the others are ghosts, whose values come from elsewhere (lcl_field_write_vertices) */
+    const int32_t* owned; /**< NULL, or the vertices that get rows: the others are ghosts, whose values come from elsewhere (lcl_field_write_vertices) */
     size_t owned_count;
 } lcl_scheme_options;
-#define LCL_SCHEME_OPTIONS_INIT { (uint32_t)sizeof(lcl_scheme_options), LCL_SCHEME_DEFAULT, LCL_MASK_CATMULL, 0.0, 0, 0.0, NULL, NULL, 0, NULL, 0 }
+#define LCL_SCHEME_OPTIONS_INIT \
+    { (uint32_t)sizeof(lcl_scheme_options), LCL_SCHEME_DEFAULT, LCL_MASK_CATMULL, 0.0, 0, 0.0, NULL, NULL, 0, NULL, 0 }
 
 typedef struct lcl_suitability {
     uint32_t struct_size;
-    int32_t suitable; /**< the scheme can be used on this mesh */
-    int32_t singular; /**< its limit operator (alpha 0, lambda 0 unless given) has no inverse: exact criterion */
-    char reason[512]; /**< why not suitable, or why singular and the cure; "" otherwise */
+    int32_t suitable;                   /**< the scheme can be used on this mesh */
+    int32_t singular;                   /**< its limit operator (alpha 0, lambda 0 unless given) has no inverse: exact criterion */
+    char reason[512];                   /**< why not suitable, or why singular and the cure; "" otherwise */
     int32_t vertices[10], vertex_count; /**< where */
 } lcl_suitability;
-#define LCL_SUITABILITY_INIT { (uint32_t)sizeof(lcl_suitability), 0, 0, "", { 0 }, 0 }
+#define LCL_SUITABILITY_INIT \
+    { (uint32_t)sizeof(lcl_suitability), 0, 0, "", {0}, 0 }
 /** Whether a scheme fits a mesh. Linear time, no device. */
 LCL_API lcl_status lcl_mesh_check_scheme(lcl_mesh mesh, const lcl_scheme_options* options, lcl_suitability* suitability);
 
@@ -310,22 +333,36 @@ typedef struct lcl_diagnosis {
     double lambda_min_bound;    /**< proven lower bound of the smallest eigenvalue; NaN where none is known (darts, valence 2) */
     double lambda_min_estimate; /**< from a short Lanczos run on the device, never below the bound; NaN where A is not self-adjoint (darts) */
     int32_t singular, indefinite;
-    char reason[512];           /**< one sentence with the cure, also where A is only nearly singular (estimate below 0.05); "" if all is well */
+    char reason[512]; /**< one sentence with the cure, also where A is only nearly singular (estimate below 0.05); "" if all is well */
     int32_t vertices[10], vertex_count;
 } lcl_diagnosis;
-#define LCL_DIAGNOSIS_INIT { (uint32_t)sizeof(lcl_diagnosis), 0.0, 0.0, 0, 0, "", { 0 }, 0 }
+#define LCL_DIAGNOSIS_INIT \
+    { (uint32_t)sizeof(lcl_diagnosis), 0.0, 0.0, 0, 0, "", {0}, 0 }
 /** What can be said of the spectrum before solving. Some 20 passes at the first call, then remembered. */
 LCL_API lcl_status lcl_operator_diagnose(lcl_operator A, lcl_diagnosis* diagnosis);
 
-typedef enum lcl_precision { LCL_PRECISION_MIXED = 0 /**< float sweeps, residuals and corrections in double or float pairs */, LCL_PRECISION_SINGLE = 1, LCL_PRECISION_DOUBLE = 2 } lcl_precision;
+typedef enum lcl_precision {
+    LCL_PRECISION_MIXED = 0 /**< float sweeps, residuals and corrections in double or float pairs */,
+    LCL_PRECISION_SINGLE = 1,
+    LCL_PRECISION_DOUBLE = 2
+} lcl_precision;
 
-/** Limit points, out = A points, through host memory: n x channels, rows `stride` values apart (0: channels). out may be points. One pass, in the given precision. */
-LCL_API lcl_status lcl_limit_points(lcl_operator A, const double* points, size_t stride, int32_t channels, lcl_precision precision, double* out, size_t out_stride);
+/** Limit points, out = A points, through host memory: n x channels, rows `stride` values apart (0: channels). out may be points. One pass, in the given
+ * precision. */
+LCL_API lcl_status lcl_limit_points(lcl_operator A, const double* points, size_t stride, int32_t channels, lcl_precision precision, double* out,
+                                    size_t out_stride);
 
 /* ---------------------------------------------------------------- solving A P = M */
 
 typedef enum lcl_solver {
-    LCL_SOLVER_AUTO = 0, LCL_SOLVER_PIA = 1, LCL_SOLVER_WPIA = 2, LCL_SOLVER_JACOBI = 3, LCL_SOLVER_GS = 4, LCL_SOLVER_GS_COLOURED = 5, LCL_SOLVER_CHEBYSHEV = 6, LCL_SOLVER_CG = 7
+    LCL_SOLVER_AUTO = 0,
+    LCL_SOLVER_PIA = 1,
+    LCL_SOLVER_WPIA = 2,
+    LCL_SOLVER_JACOBI = 3,
+    LCL_SOLVER_GS = 4,
+    LCL_SOLVER_GS_COLOURED = 5,
+    LCL_SOLVER_CHEBYSHEV = 6,
+    LCL_SOLVER_CG = 7
 } lcl_solver;
 
 /** Progress of a solve. Return 0 to cancel (LCL_ERROR_CANCELLED), anything else to go on. */
@@ -335,25 +372,26 @@ typedef struct lcl_solve_options {
     uint32_t struct_size;
     lcl_solver solver;
     lcl_precision precision;
-    double tolerance;        /**< of max_i |R_i| over x, y, z, relative to `diagonal`; 0: 1e-6. Other channels: relative to their own range */
-    int32_t max_iterations;  /**< 0: 200 */
-    int32_t exact_sweeps;    /**< > 0: exactly so many iterations, no test */
-    double weight;           /**< W-PIA: 0: the best, from the estimated spectrum; else given, above 0 and below 2 */
-    int32_t warm_start;      /**< 1: the output array (or field) holds P_0; 0: P_0 = M */
-    int32_t keep_going;      /**< 1: iterate although A is singular or indefinite */
-    double diagonal;         /**< model size that the tolerance refers to; 0: the operator's mesh's */
+    double tolerance;       /**< of max_i |R_i| over x, y, z, relative to `diagonal`; 0: 1e-6. Other channels: relative to their own range */
+    int32_t max_iterations; /**< 0: 200 */
+    int32_t exact_sweeps;   /**< > 0: exactly so many iterations, no test */
+    double weight;          /**< W-PIA: 0: the best, from the estimated spectrum; else given, above 0 and below 2 */
+    int32_t warm_start;     /**< 1: the output array (or field) holds P_0; 0: P_0 = M */
+    int32_t keep_going;     /**< 1: iterate although A is singular or indefinite */
+    double diagonal;        /**< model size that the tolerance refers to; 0: the operator's mesh's */
     lcl_progress_callback progress;
     void* progress_user;
-    int32_t certify;         /**< 1: also surface_error_bound (where rows are not diagonally dominant, some ten short solves at an operator's first call) */
+    int32_t certify; /**< 1: also surface_error_bound (where rows are not diagonally dominant, some ten short solves at an operator's first call) */
 } lcl_solve_options;
-#define LCL_SOLVE_OPTIONS_INIT { (uint32_t)sizeof(lcl_solve_options), LCL_SOLVER_AUTO, LCL_PRECISION_MIXED, 0.0, 0, 0, 0.0, 0, 0, 0.0, NULL, NULL, 0 }
+#define LCL_SOLVE_OPTIONS_INIT \
+    { (uint32_t)sizeof(lcl_solve_options), LCL_SOLVER_AUTO, LCL_PRECISION_MIXED, 0.0, 0, 0, 0.0, 0, 0, 0.0, NULL, NULL, 0 }
 
 typedef struct lcl_solve_report {
     uint32_t struct_size;
-    lcl_solver solver;          /**< the one that ran */
-    int32_t converged;          /**< max_error <= tolerance x diagonal */
-    int32_t iterations;         /**< AUTO, CHEBYSHEV and CG solve corners and curves directly first: that counts as the first iteration (not among exact_sweeps) */
-    double* residuals;          /**< caller's array or NULL: E_0 .. E_iterations, E_k = max_i |M - A P_k|_i over x, y, z, model units */
+    lcl_solver solver;  /**< the one that ran */
+    int32_t converged;  /**< max_error <= tolerance x diagonal */
+    int32_t iterations; /**< AUTO, CHEBYSHEV and CG solve corners and curves directly first: that counts as the first iteration (not among exact_sweeps) */
+    double* residuals;  /**< caller's array or NULL: E_0 .. E_iterations, E_k = max_i |M - A P_k|_i over x, y, z, model units */
     size_t residual_capacity;   /**< its size */
     size_t residual_count;      /**< iterations + 1 */
     double lambda_min;          /**< estimate, NaN if none */
@@ -363,46 +401,50 @@ typedef struct lcl_solve_report {
     double channel_error;       /**< the same residual of further channels, relative to their ranges; 0 without */
     double seconds_upload, seconds_solve, seconds_download;
     int32_t vertices[10], vertex_count; /**< where it is singular or indefinite */
-    char message[512];          /**< one sentence if not converged; "" otherwise */
+    char message[512];                  /**< one sentence if not converged; "" otherwise */
 } lcl_solve_report;
-#define LCL_SOLVE_REPORT_INIT { (uint32_t)sizeof(lcl_solve_report), LCL_SOLVER_AUTO, 0, 0, NULL, 0, 0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, { 0 }, 0, "" }
+#define LCL_SOLVE_REPORT_INIT \
+    { (uint32_t)sizeof(lcl_solve_report), LCL_SOLVER_AUTO, 0, 0, NULL, 0, 0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, {0}, 0, "" }
 
 /** Control points P with A P = M, through host memory: n x channels each, rows `stride` values apart (0: channels). P may be M.
- *  PIA: P += R (mesh expansion paper; Doo-Sabin paper). W-PIA: P += w R, GS-PIA: newest neighbours (Loop PIA paper). Jacobi: P_i += R_i / A_ii (two-phase paper, eq. 6).
- *  Chebyshev and CG: A is self-adjoint under D. AUTO: the fastest that is sure to converge. Vertices outside the subset, corners and isolated ones keep their points.
- *  LCL_OK: converged (or exact_sweeps done, on an operator that is not singular or indefinite). LCL_ERROR_SINGULAR, _INDEFINITE, _NOT_CONVERGED: P and report hold what there is. report may be NULL. */
-LCL_API lcl_status lcl_interpolate(lcl_operator A, const double* M, size_t stride, int32_t channels, const lcl_solve_options* options, double* P, size_t P_stride,
-                                   lcl_solve_report* report);
+ *  PIA: P += R (mesh expansion paper; Doo-Sabin paper). W-PIA: P += w R, GS-PIA: newest neighbours (Loop PIA paper). Jacobi: P_i += R_i / A_ii (two-phase
+ * paper, eq. 6). Chebyshev and CG: A is self-adjoint under D. AUTO: the fastest that is sure to converge. Vertices outside the subset, corners and isolated
+ * ones keep their points. LCL_OK: converged (or exact_sweeps done, on an operator that is not singular or indefinite). LCL_ERROR_SINGULAR, _INDEFINITE,
+ * _NOT_CONVERGED: P and report hold what there is. report may be NULL. */
+LCL_API lcl_status lcl_interpolate(lcl_operator A, const double* M, size_t stride, int32_t channels, const lcl_solve_options* options, double* P,
+                                   size_t P_stride, lcl_solve_report* report);
 /** The same on the points of a mesh (which must be the one that A was made from, or one with its faces): replaces them by P. */
 LCL_API lcl_status lcl_interpolate_mesh(lcl_operator A, lcl_mesh mesh, const lcl_solve_options* options, lcl_solve_report* report);
 /** The same on fields of one operator that stay on the device. */
 LCL_API lcl_status lcl_interpolate_field(lcl_operator A, lcl_field M, const lcl_solve_options* options, lcl_field P, lcl_solve_report* report);
 /** lcl_interpolate on a thread of its own: arrays, options and report must live until lcl_task_wait. The context is busy until then. */
-LCL_API lcl_status lcl_interpolate_async(lcl_operator A, const double* M, size_t stride, int32_t channels, const lcl_solve_options* options, double* P, size_t P_stride,
-                                         lcl_solve_report* report, lcl_task* task);
+LCL_API lcl_status lcl_interpolate_async(lcl_operator A, const double* M, size_t stride, int32_t channels, const lcl_solve_options* options, double* P,
+                                         size_t P_stride, lcl_solve_report* report, lcl_task* task);
 /** Waits, and gives the status of the call itself (with its sentence in lcl_last_error of this thread). */
 LCL_API lcl_status lcl_task_wait(lcl_task task);
 LCL_API int32_t lcl_task_is_done(lcl_task task);
 /** Waits, then frees. */
 LCL_API void lcl_task_release(lcl_task task);
 
-/** |A^-1|_inf of the smooth block, for error bounds: 1/min(2 a_ii - 1) where rows are diagonally dominant (then `proven` is 1), else estimated by block Hager-Higham (a few
- *  solves at the first call, then remembered; an estimate lies below the norm, by a few percent as a rule; NaN where the solves do not end). LCL_ERROR_UNSUPPORTED where A has no self-adjoint form (darts). */
+/** |A^-1|_inf of the smooth block, for error bounds: 1/min(2 a_ii - 1) where rows are diagonally dominant (then `proven` is 1), else estimated by block
+ * Hager-Higham (a few solves at the first call, then remembered; an estimate lies below the norm, by a few percent as a rule; NaN where the solves do not end).
+ * LCL_ERROR_UNSUPPORTED where A has no self-adjoint form (darts). */
 LCL_API lcl_status lcl_operator_inverse_norm(lcl_operator A, double* norm, int32_t* proven);
 
 /* ---------------------------------------------------------------- fields: values that stay on the device */
 
-/** n x channels values in the operator's own order and units, on its device; zero at first. precision MIXED and SINGLE store floats, DOUBLE doubles (MIXED solves keep their
- *  own correction beside it). LCL_ERROR_MEMORY, with the numbers, if the device has no room. */
+/** n x channels values in the operator's own order and units, on its device; zero at first. precision MIXED and SINGLE store floats, DOUBLE doubles (MIXED
+ * solves keep their own correction beside it). LCL_ERROR_MEMORY, with the numbers, if the device has no room. */
 LCL_API lcl_status lcl_field_create(lcl_operator A, int32_t channels, lcl_precision precision, lcl_field* field);
 LCL_API void lcl_field_retain(lcl_field field);
 LCL_API void lcl_field_release(lcl_field field);
 LCL_API int32_t lcl_field_channels(lcl_field field);
-/** Host to device and back: n rows in the caller's vertex order, `stride` values apart (0: channels). upload returns when `values` may be changed; download when they are there.
- *  The first upload of a field sets the centre and scale that its floats are kept in (lcl_field_match: those of another field). */
+/** Host to device and back: n rows in the caller's vertex order, `stride` values apart (0: channels). upload returns when `values` may be changed; download
+ * when they are there. The first upload of a field sets the centre and scale that its floats are kept in (lcl_field_match: those of another field). */
 LCL_API lcl_status lcl_field_upload(lcl_field field, const void* values, lcl_type type, size_t stride);
 LCL_API lcl_status lcl_field_download(lcl_field field, void* values, lcl_type type, size_t stride);
-/** Gives `field` the centre and scale of `of`, so that both can stand in one formula: before its first upload, or where they are the same. `of` may belong to another operator. */
+/** Gives `field` the centre and scale of `of`, so that both can stand in one formula: before its first upload, or where they are the same. `of` may belong to
+ * another operator. */
 LCL_API lcl_status lcl_field_match(lcl_field field, lcl_field of);
 /** Single rows by vertex: count x channels, doubles. For halo exchange between the parts of a cluster. */
 LCL_API lcl_status lcl_field_read_vertices(lcl_field field, const int32_t* vertices, size_t count, double* values);
@@ -410,12 +452,12 @@ LCL_API lcl_status lcl_field_write_vertices(lcl_field field, const int32_t* vert
 
 /** y = A x: limit points. Enqueued; lcl_context_finish or a download waits. Ghost rows of y are not touched. x and y must differ. One pass. */
 LCL_API lcl_status lcl_operator_apply(lcl_operator A, lcl_field x, lcl_field y);
-/** y = a x + b (M - A x) + c d on rows [first_block, first_block + block_count) of lcl_operator_block_count (block_count < 0: all), and, if residual is not NULL, waits for
- *  max_i |M - A x|_i over those rows and x, y, z, model units. d may be NULL if c is 0, or y. x and y must differ. M, x and d must share centre and scale (lcl_field_match).
- *  PIA: a = b = 1; W-PIA: a = 1, b = w; residual: a = 0, b = 1.
- *  One pass. Rows that are fixed (corners, outside the subset, isolated) have A x = x. */
-LCL_API lcl_status lcl_operator_step(lcl_operator A, double a, double b, double c, lcl_field M, lcl_field x, lcl_field d, lcl_field y, int32_t first_block, int32_t block_count,
-                                     double* residual);
+/** y = a x + b (M - A x) + c d on rows [first_block, first_block + block_count) of lcl_operator_block_count (block_count < 0: all), and, if residual is not
+ * NULL, waits for max_i |M - A x|_i over those rows and x, y, z, model units. d may be NULL if c is 0, or y. x and y must differ. M, x and d must share centre
+ * and scale (lcl_field_match). PIA: a = b = 1; W-PIA: a = 1, b = w; residual: a = 0, b = 1. One pass. Rows that are fixed (corners, outside the subset,
+ * isolated) have A x = x. */
+LCL_API lcl_status lcl_operator_step(lcl_operator A, double a, double b, double c, lcl_field M, lcl_field x, lcl_field d, lcl_field y, int32_t first_block,
+                                     int32_t block_count, double* residual);
 LCL_API int32_t lcl_operator_block_count(lcl_operator A);
 
 /* ---------------------------------------------------------------- refinement */
@@ -424,12 +466,15 @@ typedef struct lcl_refine_options {
     uint32_t struct_size;
     int32_t levels; /**< 0: 1; below 0: none (a copy with locations) */
 } lcl_refine_options;
-#define LCL_REFINE_OPTIONS_INIT { (uint32_t)sizeof(lcl_refine_options), 0 }
+#define LCL_REFINE_OPTIONS_INIT \
+    { (uint32_t)sizeof(lcl_refine_options), 0 }
 
-/** Refines uniformly, in double on the host. alpha_auto, subset and owned are not looked at. alpha and lambda rule the first refinement alone (lambda: the two-phase first step, which gives the mesh M^1); the result is read with
- *  alpha 0 and lambda 0, and carries refined creases and corners. Colours and scalar properties are refined as channels; texture coordinates are dropped with a note. */
+/** Refines uniformly, in double on the host. alpha_auto, subset and owned are not looked at. alpha and lambda rule the first refinement alone (lambda: the
+ * two-phase first step, which gives the mesh M^1); the result is read with alpha 0 and lambda 0, and carries refined creases and corners. Colours and scalar
+ * properties are refined as channels; texture coordinates are dropped with a note. */
 LCL_API lcl_status lcl_mesh_refine(lcl_mesh mesh, const lcl_scheme_options* scheme, const lcl_refine_options* options, lcl_mesh* refined);
-/** Where each vertex of a refined mesh lies on the original's surface, in the parameters of `limitcl evaluate`: faces (-1: isolated) and corners: vertex_count; uv: vertex_count x 2. */
+/** Where each vertex of a refined mesh lies on the original's surface, in the parameters of `limitcl evaluate`: faces (-1: isolated) and corners: vertex_count;
+ * uv: vertex_count x 2. */
 LCL_API lcl_status lcl_mesh_get_locations(lcl_mesh refined, int32_t* faces, int32_t* corners, double* uv);
 
 #ifdef __cplusplus

@@ -24,8 +24,7 @@ struct PointView {
     lcl_type type;
 
 private:
-    static std::size_t whole_points(std::size_t values)
-    {
+    static std::size_t whole_points(std::size_t values) {
         if (values % 3 != 0)
             throw Error(LCL_ERROR_INVALID_ARGUMENT, std::to_string(values) + " values are no whole number of points; give three values a point");
         return values / 3;
@@ -33,26 +32,26 @@ private:
 };
 
 enum class Boundary {
-    by_file = LCL_BOUNDARY_DEFAULT,                 ///< the file's tag, else edge_and_corner
-    edge_and_corner = LCL_BOUNDARY_EDGE_AND_CORNER, ///< boundary curves; vertices with one face are corners
-    edge_only = LCL_BOUNDARY_EDGE_ONLY,             ///< boundary curves everywhere
-    fixed = LCL_BOUNDARY_FIXED                      ///< every boundary vertex is a corner
+    by_file = LCL_BOUNDARY_DEFAULT,                  ///< the file's tag, else edge_and_corner
+    edge_and_corner = LCL_BOUNDARY_EDGE_AND_CORNER,  ///< boundary curves; vertices with one face are corners
+    edge_only = LCL_BOUNDARY_EDGE_ONLY,              ///< boundary curves everywhere
+    fixed = LCL_BOUNDARY_FIXED                       ///< every boundary vertex is a corner
 };
 
 /// Sharp features beside the boundary.
 struct Features {
     Boundary boundary = Boundary::by_file;
-    std::vector<std::int32_t> creases;   ///< pairs of vertices, one pair an edge
-    std::vector<std::int32_t> corners;   ///< vertices that stay where they are
-    double crease_angle_degrees = 0;     ///< > 0: edges whose face normals differ by more are creases (add_features only)
+    std::vector<std::int32_t> creases;  ///< pairs of vertices, one pair an edge
+    std::vector<std::int32_t> corners;  ///< vertices that stay where they are
+    double crease_angle_degrees = 0;    ///< > 0: edges whose face normals differ by more are creases (add_features only)
 };
 
 /// Counts of a mesh. Edges and what follows from them are -1 on a mesh that is not sound.
 struct MeshInfo {
     int vertices = 0, faces = 0, edges = 0, boundary_edges = 0, boundary_loops = 0, components = 0, isolated_vertices = 0;
-    int creases = 0;     ///< sharp edges off the boundary
-    int corners = 0;     ///< vertices that stay, isolated ones not counted
-    double diagonal = 0; ///< of the bounding box of the vertices that a face uses, model units
+    int creases = 0;      ///< sharp edges off the boundary
+    int corners = 0;      ///< vertices that stay, isolated ones not counted
+    double diagonal = 0;  ///< of the bounding box of the vertices that a face uses, model units
 };
 
 /// One kind of defect of a mesh with the first ten places.
@@ -123,8 +122,7 @@ private:
     MeshHandle handle_;
 };
 
-inline Mesh Mesh::create(const PointView& points, lcl_mesh_data& data)
-{
+inline Mesh Mesh::create(const PointView& points, lcl_mesh_data& data) {
     if (points.count > INT32_MAX)
         throw Error(LCL_ERROR_INVALID_ARGUMENT, std::to_string(points.count) + " points are more than the 2147483647 that a mesh can have");
     data.vertex_count = static_cast<std::int32_t>(points.count);
@@ -136,11 +134,9 @@ inline Mesh Mesh::create(const PointView& points, lcl_mesh_data& data)
     return Mesh(MeshHandle(mesh));
 }
 
-inline Mesh Mesh::from_faces(PointView points, ArrayView<std::int32_t> face_degrees, ArrayView<std::int32_t> face_vertices)
-{
+inline Mesh Mesh::from_faces(PointView points, ArrayView<std::int32_t> face_degrees, ArrayView<std::int32_t> face_vertices) {
     std::int64_t corners = 0;
-    for (const std::int32_t degree : face_degrees)
-        corners += degree;
+    for (const std::int32_t degree : face_degrees) corners += degree;
     if (face_degrees.size() > INT32_MAX || corners != static_cast<std::int64_t>(face_vertices.size()))
         throw Error(LCL_ERROR_INVALID_ARGUMENT, "the face degrees add up to " + std::to_string(corners) + ", but there are " +
                                                     std::to_string(face_vertices.size()) + " face vertices; give one for each corner");
@@ -151,8 +147,7 @@ inline Mesh Mesh::from_faces(PointView points, ArrayView<std::int32_t> face_degr
     return create(points, data);
 }
 
-inline Mesh Mesh::from_uniform_faces(PointView points, int degree, ArrayView<std::int32_t> face_vertices)
-{
+inline Mesh Mesh::from_uniform_faces(PointView points, int degree, ArrayView<std::int32_t> face_vertices) {
     if (degree < 3 || face_vertices.size() % static_cast<std::size_t>(degree) != 0 || face_vertices.size() / static_cast<std::size_t>(degree) > INT32_MAX)
         throw Error(LCL_ERROR_INVALID_ARGUMENT, std::to_string(face_vertices.size()) + " face vertices do not make faces of " + std::to_string(degree) +
                                                     " sides; give degree values a face, degree 3 or more");
@@ -163,59 +158,49 @@ inline Mesh Mesh::from_uniform_faces(PointView points, int degree, ArrayView<std
     return create(points, data);
 }
 
-inline Mesh Mesh::copy() const
-{
+inline Mesh Mesh::copy() const {
     lcl_mesh mesh = nullptr;
     check(lcl_mesh_copy(get(), &mesh));
     return Mesh(MeshHandle(mesh));
 }
 
-inline std::vector<std::int32_t> Mesh::face_degrees() const
-{
+inline std::vector<std::int32_t> Mesh::face_degrees() const {
     std::vector<std::int32_t> degrees(static_cast<std::size_t>(face_count()));
     check(lcl_mesh_get_faces(get(), degrees.data(), nullptr));
     return degrees;
 }
 
-inline std::vector<std::int32_t> Mesh::face_vertices() const
-{
+inline std::vector<std::int32_t> Mesh::face_vertices() const {
     std::vector<std::int32_t> vertices(static_cast<std::size_t>(corner_count()));
     check(lcl_mesh_get_faces(get(), nullptr, vertices.data()));
     return vertices;
 }
 
-inline std::vector<double> Mesh::points() const
-{
+inline std::vector<double> Mesh::points() const {
     std::vector<double> points(3 * static_cast<std::size_t>(vertex_count()));
     check(lcl_mesh_get_points(get(), points.data(), 3));
     return points;
 }
 
-inline void Mesh::require_size(std::size_t size, std::size_t per_vertex, const char* what) const
-{
+inline void Mesh::require_size(std::size_t size, std::size_t per_vertex, const char* what) const {
     const std::size_t expected = per_vertex * static_cast<std::size_t>(vertex_count());
     if (size != expected)
         throw Error(LCL_ERROR_INVALID_ARGUMENT,
                     std::string(what) + ": " + std::to_string(size) + " values were given, the mesh needs " + std::to_string(expected));
 }
 
-inline void Mesh::set_points(ArrayView<double> points)
-{
+inline void Mesh::set_points(ArrayView<double> points) {
     require_size(points.size(), 3, "points");
     check(lcl_mesh_set_points(get(), points.data(), 3));
 }
 
-inline void Mesh::set_normals(ArrayView<double> normals)
-{
-    if (!normals.empty())
-        require_size(normals.size(), 3, "normals");
+inline void Mesh::set_normals(ArrayView<double> normals) {
+    if (!normals.empty()) require_size(normals.size(), 3, "normals");
     check(lcl_mesh_set_normals(get(), normals.empty() ? nullptr : normals.data()));
 }
 
-inline void Mesh::add_features(const Features& features)
-{
-    if (features.creases.size() % 2 != 0)
-        throw Error(LCL_ERROR_INVALID_ARGUMENT, "the creases hold an odd number of vertices; give two for each edge");
+inline void Mesh::add_features(const Features& features) {
+    if (features.creases.size() % 2 != 0) throw Error(LCL_ERROR_INVALID_ARGUMENT, "the creases hold an odd number of vertices; give two for each edge");
     lcl_features c = LCL_FEATURES_INIT;
     c.boundary = static_cast<lcl_boundary>(features.boundary);
     c.creases = features.creases.data();
@@ -226,8 +211,7 @@ inline void Mesh::add_features(const Features& features)
     check(lcl_mesh_add_features(get(), &c));
 }
 
-inline Features Mesh::features() const
-{
+inline Features Mesh::features() const {
     lcl_boundary boundary = LCL_BOUNDARY_DEFAULT;
     std::size_t crease_count = 0, corner_count = 0;
     check(lcl_mesh_get_features(get(), &boundary, nullptr, &crease_count, nullptr, &corner_count));
@@ -239,27 +223,23 @@ inline Features Mesh::features() const
     return features;
 }
 
-inline MeshInfo Mesh::info() const
-{
+inline MeshInfo Mesh::info() const {
     lcl_mesh_info c = LCL_MESH_INFO_INIT;
     check(lcl_mesh_get_info(get(), &c));
     return {c.vertices, c.faces, c.edges, c.boundary_edges, c.boundary_loops, c.components, c.isolated_vertices, c.creases, c.corners, c.diagonal};
 }
 
-inline std::map<int, int> Mesh::histogram(lcl_histogram which) const
-{
+inline std::map<int, int> Mesh::histogram(lcl_histogram which) const {
     std::size_t size = 0;
     check(lcl_mesh_get_histogram(get(), which, nullptr, nullptr, 0, &size));
     std::vector<std::int32_t> keys(size), counts(size);
     check(lcl_mesh_get_histogram(get(), which, keys.data(), counts.data(), size, &size));
     std::map<int, int> histogram;
-    for (std::size_t i = 0; i < size; ++i)
-        histogram[keys[i]] = counts[i];
+    for (std::size_t i = 0; i < size; ++i) histogram[keys[i]] = counts[i];
     return histogram;
 }
 
-inline std::vector<Defect> Mesh::defects() const
-{
+inline std::vector<Defect> Mesh::defects() const {
     std::vector<Defect> defects;
     for (std::int32_t i = 0; i < lcl_mesh_defect_count(get()); ++i) {
         lcl_defect c = LCL_DEFECT_INIT;
@@ -269,16 +249,13 @@ inline std::vector<Defect> Mesh::defects() const
     return defects;
 }
 
-inline std::vector<std::string> Mesh::property_names() const
-{
+inline std::vector<std::string> Mesh::property_names() const {
     std::vector<std::string> names;
-    for (std::int32_t i = 0; i < lcl_mesh_property_count(get()); ++i)
-        names.emplace_back(lcl_mesh_property_name(get(), i));
+    for (std::int32_t i = 0; i < lcl_mesh_property_count(get()); ++i) names.emplace_back(lcl_mesh_property_name(get(), i));
     return names;
 }
 
-inline std::vector<double> Mesh::property(const std::string& name) const
-{
+inline std::vector<double> Mesh::property(const std::string& name) const {
     const std::vector<std::string> names = property_names();
     for (std::size_t i = 0; i < names.size(); ++i)
         if (names[i] == name) {
@@ -289,20 +266,17 @@ inline std::vector<double> Mesh::property(const std::string& name) const
     throw Error(LCL_ERROR_INVALID_ARGUMENT, "the mesh has no property '" + name + "'; property_names() lists those that it has");
 }
 
-inline void Mesh::set_property(const std::string& name, ArrayView<double> values)
-{
+inline void Mesh::set_property(const std::string& name, ArrayView<double> values) {
     require_size(values.size(), 1, name.c_str());
     check(lcl_mesh_set_property(get(), name.c_str(), values.data()));
 }
 
-inline std::vector<std::string> Mesh::warnings() const
-{
+inline std::vector<std::string> Mesh::warnings() const {
     std::vector<std::string> notes;
-    for (std::int32_t i = 0; i < lcl_mesh_note_count(get(), LCL_NOTE_WARNING); ++i)
-        notes.emplace_back(lcl_mesh_note(get(), LCL_NOTE_WARNING, i));
+    for (std::int32_t i = 0; i < lcl_mesh_note_count(get(), LCL_NOTE_WARNING); ++i) notes.emplace_back(lcl_mesh_note(get(), LCL_NOTE_WARNING, i));
     return notes;
 }
 
-} // namespace limitcl
+}  // namespace limitcl
 
 #endif

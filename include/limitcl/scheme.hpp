@@ -8,15 +8,15 @@
 namespace limitcl {
 
 enum class Scheme {
-    by_faces = LCL_SCHEME_DEFAULT, ///< Loop if all faces are triangles, else Catmull-Clark
+    by_faces = LCL_SCHEME_DEFAULT,  ///< Loop if all faces are triangles, else Catmull-Clark
     catmull_clark = LCL_SCHEME_CATMULL_CLARK,
     loop = LCL_SCHEME_LOOP,
     doo_sabin = LCL_SCHEME_DOO_SABIN
 };
 
 enum class Mask {
-    catmull = LCL_MASK_CATMULL, ///< Doo-Sabin paper, chapter 4
-    classic = LCL_MASK_CLASSIC  ///< Doo & Sabin 1978
+    catmull = LCL_MASK_CATMULL,  ///< Doo-Sabin paper, chapter 4
+    classic = LCL_MASK_CLASSIC   ///< Doo & Sabin 1978
 };
 
 /// A scheme with its parameters, and which vertices get rows.
@@ -25,13 +25,13 @@ struct SchemeOptions {
     SchemeOptions(Scheme which) : scheme(which) {}
 
     Scheme scheme = Scheme::by_faces;
-    Mask mask = Mask::catmull;            ///< Doo-Sabin
-    double alpha = 0;                     ///< Catmull-Clark, 0 to 1: rule of the first refinement (mesh expansion paper)
-    bool alpha_auto = false;              ///< alpha is 0, or 0.5 where 0 is singular, indefinite or close to it
-    double lambda = 0;                    ///< Catmull-Clark, 0 to 1: blend ratio, A_lambda = lambda E + (1 - lambda) A (two-phase paper, eq. 5)
-    std::vector<double> lambda_per_vertex; ///< empty, or one ratio a vertex, which rules over lambda
-    std::vector<std::int32_t> subset;     ///< empty: all; else the vertices to interpolate, the others keep their control points
-    std::vector<std::int32_t> owned;      ///< empty: all; else the vertices that get rows, the others are ghosts
+    Mask mask = Mask::catmull;              ///< Doo-Sabin
+    double alpha = 0;                       ///< Catmull-Clark, 0 to 1: rule of the first refinement (mesh expansion paper)
+    bool alpha_auto = false;                ///< alpha is 0, or 0.5 where 0 is singular, indefinite or close to it
+    double lambda = 0;                      ///< Catmull-Clark, 0 to 1: blend ratio, A_lambda = lambda E + (1 - lambda) A (two-phase paper, eq. 5)
+    std::vector<double> lambda_per_vertex;  ///< empty, or one ratio a vertex, which rules over lambda
+    std::vector<std::int32_t> subset;       ///< empty: all; else the vertices to interpolate, the others keep their control points
+    std::vector<std::int32_t> owned;        ///< empty: all; else the vertices that get rows, the others are ghosts
 
     /// The struct of the C API. It points into this object: use it before this object changes or goes.
     lcl_scheme_options to_c() const;
@@ -40,14 +40,13 @@ struct SchemeOptions {
 
 /// Whether a scheme fits a mesh.
 struct Suitability {
-    bool suitable = false;              ///< the scheme can be used
-    bool singular = false;              ///< its limit operator has no inverse: interpolation is not possible with these parameters
-    std::string reason;                 ///< why not suitable, or why singular and the cure; "" otherwise
-    std::vector<std::int32_t> vertices; ///< where, at most ten
+    bool suitable = false;               ///< the scheme can be used
+    bool singular = false;               ///< its limit operator has no inverse: interpolation is not possible with these parameters
+    std::string reason;                  ///< why not suitable, or why singular and the cure; "" otherwise
+    std::vector<std::int32_t> vertices;  ///< where, at most ten
 };
 
-inline lcl_scheme_options SchemeOptions::to_c() const
-{
+inline lcl_scheme_options SchemeOptions::to_c() const {
     lcl_scheme_options c = LCL_SCHEME_OPTIONS_INIT;
     c.scheme = static_cast<lcl_scheme>(scheme);
     c.mask = static_cast<lcl_mask>(mask);
@@ -62,8 +61,7 @@ inline lcl_scheme_options SchemeOptions::to_c() const
     return c;
 }
 
-inline SchemeOptions SchemeOptions::from_c(const lcl_scheme_options& c)
-{
+inline SchemeOptions SchemeOptions::from_c(const lcl_scheme_options& c) {
     SchemeOptions options(static_cast<Scheme>(c.scheme));
     options.mask = static_cast<Mask>(c.mask);
     options.alpha = c.alpha;
@@ -73,8 +71,7 @@ inline SchemeOptions SchemeOptions::from_c(const lcl_scheme_options& c)
 }
 
 /// Tests a scheme on a mesh in linear time, without a device. Error LCL_ERROR_INVALID_ARGUMENT for options out of range.
-inline Suitability check_scheme(const Mesh& mesh, const SchemeOptions& options = {})
-{
+inline Suitability check_scheme(const Mesh& mesh, const SchemeOptions& options = {}) {
     if (!options.lambda_per_vertex.empty() && options.lambda_per_vertex.size() != static_cast<std::size_t>(mesh.vertex_count()))
         throw Error(LCL_ERROR_INVALID_ARGUMENT, "lambda_per_vertex has " + std::to_string(options.lambda_per_vertex.size()) + " values, the mesh has " +
                                                     std::to_string(mesh.vertex_count()) + " vertices");
@@ -84,6 +81,6 @@ inline Suitability check_scheme(const Mesh& mesh, const SchemeOptions& options =
     return {suitability.suitable != 0, suitability.singular != 0, suitability.reason, {suitability.vertices, suitability.vertices + suitability.vertex_count}};
 }
 
-} // namespace limitcl
+}  // namespace limitcl
 
 #endif

@@ -10,11 +10,11 @@
 namespace limitcl {
 
 enum class Solver {
-    automatic = LCL_SOLVER_AUTO, ///< the fastest that is sure to converge
-    pia = LCL_SOLVER_PIA,        ///< P += R (mesh expansion paper; Doo-Sabin paper)
-    wpia = LCL_SOLVER_WPIA,      ///< P += w R
-    jacobi = LCL_SOLVER_JACOBI,  ///< P_i += R_i / A_ii (two-phase paper, eq. 6)
-    gs = LCL_SOLVER_GS,          ///< newest neighbours, in the order of the vertices (Loop PIA paper)
+    automatic = LCL_SOLVER_AUTO,  ///< the fastest that is sure to converge
+    pia = LCL_SOLVER_PIA,         ///< P += R (mesh expansion paper; Doo-Sabin paper)
+    wpia = LCL_SOLVER_WPIA,       ///< P += w R
+    jacobi = LCL_SOLVER_JACOBI,   ///< P_i += R_i / A_ii (two-phase paper, eq. 6)
+    gs = LCL_SOLVER_GS,           ///< newest neighbours, in the order of the vertices (Loop PIA paper)
     gs_coloured = LCL_SOLVER_GS_COLOURED,
     chebyshev = LCL_SOLVER_CHEBYSHEV,
     cg = LCL_SOLVER_CG
@@ -37,9 +37,9 @@ struct SolveOptions {
 
 /// What a solve did. Lengths in model units.
 struct SolveReport {
-    lcl_status status = LCL_OK; ///< LCL_OK, LCL_ERROR_SINGULAR, LCL_ERROR_INDEFINITE or LCL_ERROR_NOT_CONVERGED
-    Solver solver = Solver::automatic; ///< the one that ran
-    bool converged = false;     ///< max_error <= tolerance x diagonal
+    lcl_status status = LCL_OK;         ///< LCL_OK, LCL_ERROR_SINGULAR, LCL_ERROR_INDEFINITE or LCL_ERROR_NOT_CONVERGED
+    Solver solver = Solver::automatic;  ///< the one that ran
+    bool converged = false;             ///< max_error <= tolerance x diagonal
     int iterations = 0;
     std::vector<double> residuals;   ///< E_0 .. E_iterations, E_k = max_i |M - A P_k|_i
     double lambda_min = 0;           ///< estimate; NaN if none
@@ -47,8 +47,8 @@ struct SolveReport {
     double surface_error_bound = 0;  ///< with certify: bound of the distance to the exact solution's surface; NaN without, and where none is known
     double channel_error = 0;        ///< the residual of further channels, relative to their ranges
     double seconds_upload = 0, seconds_solve = 0, seconds_download = 0;
-    std::vector<std::int32_t> vertices; ///< where it is singular or indefinite
-    std::string message;                ///< one sentence if not converged; "" otherwise
+    std::vector<std::int32_t> vertices;  ///< where it is singular or indefinite
+    std::string message;                 ///< one sentence if not converged; "" otherwise
 
     /// Throws Error with status and message unless the status is LCL_OK.
     const SolveReport& require_ok() const;
@@ -56,7 +56,7 @@ struct SolveReport {
 
 /// Control points with the report on how they were found.
 struct Interpolation {
-    std::vector<double> points; ///< vertex_count x channels
+    std::vector<double> points;  ///< vertex_count x channels
     SolveReport report;
 };
 
@@ -84,24 +84,21 @@ private:
     lcl_solve_report report_ = LCL_SOLVE_REPORT_INIT;
 };
 
-} // namespace detail
+}  // namespace detail
 
 /// Control points P with A P = M. M, P: vertex_count x channels, positions first, model units. P belongs to the caller, may be M, and holds the start if
 /// options.warm_start.
 /// Singular, indefinite and not converged are results: P and the report hold what there is, see SolveReport::status. Other failures throw Error.
 /// The number of passes over A is about report.iterations, plus some 20 where the spectrum is estimated.
-[[nodiscard]] inline SolveReport interpolate(const LimitOperator& A, ArrayView<double> M, int channels, double* P, const SolveOptions& options = {})
-{
+[[nodiscard]] inline SolveReport interpolate(const LimitOperator& A, ArrayView<double> M, int channels, double* P, const SolveOptions& options = {}) {
     detail::require_values(A, M.size(), channels, "M");
     detail::SolveCall call(options);
     return call.finish(lcl_interpolate(A.get(), M.data(), 0, channels, call.options(), P, 0, call.report()));
 }
 
 /// The same with P in a vector of its own (no warm start).
-[[nodiscard]] inline Interpolation interpolate(const LimitOperator& A, ArrayView<double> M, int channels = 3, const SolveOptions& options = {})
-{
-    if (options.warm_start)
-        throw Error(LCL_ERROR_INVALID_ARGUMENT, "a warm start needs an array that holds it; give one for P");
+[[nodiscard]] inline Interpolation interpolate(const LimitOperator& A, ArrayView<double> M, int channels = 3, const SolveOptions& options = {}) {
+    if (options.warm_start) throw Error(LCL_ERROR_INVALID_ARGUMENT, "a warm start needs an array that holds it; give one for P");
     Interpolation result;
     result.points.resize(M.size());
     result.report = interpolate(A, M, channels, result.points.data(), options);
@@ -109,15 +106,13 @@ private:
 }
 
 /// The same on the points of a mesh, which become P. The mesh must be the one that A was made from, or one with its faces.
-[[nodiscard]] inline SolveReport interpolate(const LimitOperator& A, Mesh& mesh, const SolveOptions& options = {})
-{
+[[nodiscard]] inline SolveReport interpolate(const LimitOperator& A, Mesh& mesh, const SolveOptions& options = {}) {
     detail::SolveCall call(options);
     return call.finish(lcl_interpolate_mesh(A.get(), mesh.get(), call.options(), call.report()));
 }
 
 /// The same on fields that stay on the device.
-[[nodiscard]] inline SolveReport interpolate(const LimitOperator& A, const Field& M, Field& P, const SolveOptions& options = {})
-{
+[[nodiscard]] inline SolveReport interpolate(const LimitOperator& A, const Field& M, Field& P, const SolveOptions& options = {}) {
     detail::SolveCall call(options);
     return call.finish(lcl_interpolate_field(A.get(), M.get(), call.options(), P.get(), call.report()));
 }
@@ -128,13 +123,11 @@ class SolveTask {
 public:
     /// Starts. Arguments as those of interpolate; options.progress is called on the thread of the solve.
     SolveTask(const LimitOperator& A, ArrayView<double> M, int channels, double* P, const SolveOptions& options = {})
-        : operator_(A), call_(std::make_unique<detail::SolveCall>(options))
-    {
+        : operator_(A), call_(std::make_unique<detail::SolveCall>(options)) {
         detail::require_values(A, M.size(), channels, "M");
         check(lcl_interpolate_async(A.get(), M.data(), 0, channels, call_->options(), P, 0, call_->report(), &task_));
     }
-    SolveTask(SolveTask&& other) noexcept
-        : operator_(std::move(other.operator_)), call_(std::move(other.call_)), task_(std::exchange(other.task_, nullptr)) {}
+    SolveTask(SolveTask&& other) noexcept : operator_(std::move(other.operator_)), call_(std::move(other.call_)), task_(std::exchange(other.task_, nullptr)) {}
     SolveTask& operator=(SolveTask&&) = delete;
     /// Waits.
     ~SolveTask() { lcl_task_release(task_); }
@@ -149,15 +142,12 @@ private:
     lcl_task task_ = nullptr;
 };
 
-inline const SolveReport& SolveReport::require_ok() const
-{
-    if (status != LCL_OK)
-        throw Error(status, message, vertices);
+inline const SolveReport& SolveReport::require_ok() const {
+    if (status != LCL_OK) throw Error(status, message, vertices);
     return *this;
 }
 
-inline detail::SolveCall::SolveCall(const SolveOptions& options) : progress_(options.progress)
-{
+inline detail::SolveCall::SolveCall(const SolveOptions& options) : progress_(options.progress) {
     const int sweeps = options.exact_sweeps > 0 ? options.exact_sweeps : options.max_iterations;
     residuals_.resize(static_cast<std::size_t>(sweeps > 0 ? sweeps : 200) + 1);
     options_.solver = static_cast<lcl_solver>(options.solver);
@@ -178,23 +168,19 @@ inline detail::SolveCall::SolveCall(const SolveOptions& options) : progress_(opt
     report_.residual_capacity = residuals_.size();
 }
 
-inline std::int32_t detail::SolveCall::forward_progress(void* user, std::int32_t iteration, double residual, double target)
-{
+inline std::int32_t detail::SolveCall::forward_progress(void* user, std::int32_t iteration, double residual, double target) {
     SolveCall& call = *static_cast<SolveCall*>(user);
     try {
         return call.progress_(iteration, residual, target);
-    } catch (...) { // an exception must not pass through C: cancel, and let it go on in finish()
+    } catch (...) {  // an exception must not pass through C: cancel, and let it go on in finish()
         call.thrown_ = std::current_exception();
         return 0;
     }
 }
 
-inline SolveReport detail::SolveCall::finish(lcl_status status)
-{
-    if (thrown_)
-        std::rethrow_exception(thrown_);
-    if (status != LCL_OK && status != LCL_ERROR_SINGULAR && status != LCL_ERROR_INDEFINITE && status != LCL_ERROR_NOT_CONVERGED)
-        throw Error::last(status);
+inline SolveReport detail::SolveCall::finish(lcl_status status) {
+    if (thrown_) std::rethrow_exception(thrown_);
+    if (status != LCL_OK && status != LCL_ERROR_SINGULAR && status != LCL_ERROR_INDEFINITE && status != LCL_ERROR_NOT_CONVERGED) throw Error::last(status);
     SolveReport report;
     report.status = status;
     report.solver = static_cast<Solver>(report_.solver);
@@ -214,6 +200,6 @@ inline SolveReport detail::SolveCall::finish(lcl_status status)
     return report;
 }
 
-} // namespace limitcl
+}  // namespace limitcl
 
 #endif

@@ -8,8 +8,7 @@
 
 #include "octahedron.h"
 
-int main()
-{
+int main() {
     const std::vector<double> M(octahedron_points, octahedron_points + 18);
     const limitcl::Context context;
     const limitcl::Mesh mesh = limitcl::Mesh::from_uniform_faces(M, 3, octahedron_faces);
@@ -17,8 +16,7 @@ int main()
     const limitcl::Interpolation result = limitcl::interpolate(A, M);
     result.report.require_ok();
     double largest = 0;
-    for (int i = 0; i < 18; ++i)
-        largest = std::fmax(largest, std::fabs(result.points[i] - octahedron_control_scale * M[i]));
+    for (int i = 0; i < 18; ++i) largest = std::fmax(largest, std::fabs(result.points[i] - octahedron_control_scale * M[i]));
     std::cout << "limitcl from C++: control points right to " << largest << '\n';
     return largest <= octahedron_tolerance ? 0 : 1;
 }

@@ -12,11 +12,11 @@ namespace {
 const double pi = std::acos(-1.0);
 
 struct Adjacency {
-    std::vector<Edge> edges;                               // by first appearance walking the faces, as walked
+    std::vector<Edge> edges;  // by first appearance walking the faces, as walked
     std::map<Edge, int> edge_number;
-    std::map<std::pair<int, int>, int> half_edge_face;     // (from, to) -> face
-    std::vector<std::vector<int>> vertex_faces;            // faces at a vertex
-    std::vector<std::vector<int>> neighbours;              // other ends of the edges at a vertex
+    std::map<std::pair<int, int>, int> half_edge_face;  // (from, to) -> face
+    std::vector<std::vector<int>> vertex_faces;         // faces at a vertex
+    std::vector<std::vector<int>> neighbours;           // other ends of the edges at a vertex
 };
 
 Adjacency adjacency_of(const Surface& surface) {
@@ -358,8 +358,7 @@ private:
                 step_.vertex_faces[v].push_back(static_cast<int>(step_.surface.faces.size()));
                 step_.surface.faces.push_back(points);
             } else {  // a corner inside: the vertex-face becomes a fan round it
-                for (std::size_t i = 0; i < points.size(); ++i)
-                    step_.surface.faces.push_back({points[i], points[(i + 1) % points.size()], kept->second});
+                for (std::size_t i = 0; i < points.size(); ++i) step_.surface.faces.push_back({points[i], points[(i + 1) % points.size()], kept->second});
             }
         }
     }
@@ -393,9 +392,9 @@ private:
     const lcl::DooSabinMask mask_;
     Step step_;
     std::vector<Eigen::RowVectorXd> rows_;
-    std::map<std::pair<int, int>, int> corner_points_;                   // (face, vertex) -> point
+    std::map<std::pair<int, int>, int> corner_points_;                    // (face, vertex) -> point
     std::map<std::pair<int, int>, std::pair<int, int>> boundary_points_;  // sharp half-edge (a, b) -> points next to a and to b
-    std::map<std::pair<int, int>, int> kept_;                            // (corner, first face of its sector) -> point
+    std::map<std::pair<int, int>, int> kept_;                             // (corner, first face of its sector) -> point
 };
 
 Eigen::Vector3d newell_normal(const std::vector<int>& face, const Eigen::MatrixXd& points) {

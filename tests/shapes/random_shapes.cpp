@@ -142,7 +142,7 @@ private:
 Face merged(Face left, Face right, int a, int b) {
     for (const int v : left)
         if (v != a && v != b && std::find(right.begin(), right.end(), v) != right.end()) return {};
-    std::rotate(left.begin(), std::find(left.begin(), left.end(), b), left.end());     // b .. a
+    std::rotate(left.begin(), std::find(left.begin(), left.end(), b), left.end());      // b .. a
     std::rotate(right.begin(), std::find(right.begin(), right.end(), a), right.end());  // a .. b
     left.insert(left.end(), right.begin() + 1, right.end() - 1);
     return left;

@@ -307,10 +307,19 @@ Shape cube_with_dart() { return with_features(cube(), "cube_with_dart", {{6, 2}}
 // Vertex (i, j) of a 6 x 6 grid is 7 j + i.
 Shape grid_with_creases() {
     return with_features(grid_quads(6, 6), "grid_with_creases",
-                         {{3, 10}, {10, 17}, {17, 24}, {24, 31}, {31, 38}, {38, 45},  // the column i = 3 from boundary to boundary
-                          {22, 23}, {23, 24}, {24, 25}, {25, 26},                     // across it at (3, 3), a dart at both ends
-                          {8, 9}, {9, 2},                                             // from the dart (1, 1) round one face to the boundary
-                          {40, 41}});                                                 // a dart at (5, 5) that ends on the boundary
+                         {{3, 10},
+                          {10, 17},
+                          {17, 24},
+                          {24, 31},
+                          {31, 38},
+                          {38, 45},  // the column i = 3 from boundary to boundary
+                          {22, 23},
+                          {23, 24},
+                          {24, 25},
+                          {25, 26},  // across it at (3, 3), a dart at both ends
+                          {8, 9},
+                          {9, 2},      // from the dart (1, 1) round one face to the boundary
+                          {40, 41}});  // a dart at (5, 5) that ends on the boundary
 }
 
 Shape grid_with_marked_corner() { return with_features(grid_quads(4, 5), "grid_with_marked_corner", {}, {12, 10}); }
