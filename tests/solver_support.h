@@ -72,13 +72,17 @@ inline Eigen::MatrixXd rough_values(Eigen::Index rows, Eigen::Index columns, std
 
 /// A mesh with its topology and sharp features.
 struct Prepared {
-    explicit Prepared(shapes::Shape shape_) : shape(std::move(shape_)), topology(lcl::build_topology(shape.mesh)), features(find_features(shape.mesh, topology, shape.features)) {}
+    explicit Prepared(shapes::Shape shape_)
+        : shape(std::move(shape_)), topology(lcl::build_topology(shape.mesh)), features(find_features(shape.mesh, topology, shape.features)) {}
     shapes::Shape shape;
     lcl::Topology topology;
     lcl::Features features;
 
-    lcl::Plan plan(const lcl::SchemeOptions& scheme, const lcl::PlanOptions& options = {}) const { return build_plan(shape.mesh, topology, features, scheme, options); }
-    std::unique_ptr<lcl::LimitSystem> system(const std::shared_ptr<lcl::Context>& context, const lcl::SchemeOptions& scheme, const std::vector<std::uint8_t>& subset = {}) const {
+    lcl::Plan plan(const lcl::SchemeOptions& scheme, const lcl::PlanOptions& options = {}) const {
+        return build_plan(shape.mesh, topology, features, scheme, options);
+    }
+    std::unique_ptr<lcl::LimitSystem> system(const std::shared_ptr<lcl::Context>& context, const lcl::SchemeOptions& scheme,
+                                             const std::vector<std::uint8_t>& subset = {}) const {
         lcl::PlanOptions options;
         options.subset = subset;
         return make_limit_system(context, shape.mesh, topology, features, scheme, options);
@@ -91,7 +95,8 @@ inline oracle::SparseMatrix matrix_of(const lcl::Plan& plan) {
     std::vector<Eigen::Triplet<double>> entries;
     for (lcl::Index row = 0; row < plan.row_count; ++row) {
         const lcl::LimitRow entry = plan_row(plan, run_of_row(plan, row), row);
-        for (std::size_t k = 0; k < entry.columns.size(); ++k) entries.emplace_back(plan.vertex_of_row[row], plan.vertex_of_row[entry.columns[k]], entry.weights[k]);
+        for (std::size_t k = 0; k < entry.columns.size(); ++k)
+            entries.emplace_back(plan.vertex_of_row[row], plan.vertex_of_row[entry.columns[k]], entry.weights[k]);
     }
     oracle::SparseMatrix a(plan.vertex_count, plan.vertex_count);
     a.setFromTriplets(entries.begin(), entries.end());
@@ -129,7 +134,8 @@ inline Solved solve(lcl::LimitSystem& system, const Eigen::MatrixXd& m, const lc
     return {std::move(report), points};
 }
 
-inline lcl::SolveOptions solve_options(lcl::Solver solver, double tolerance = 1e-6, lcl::Precision precision = lcl::Precision::mixed, int max_iterations = 1000) {
+inline lcl::SolveOptions solve_options(lcl::Solver solver, double tolerance = 1e-6, lcl::Precision precision = lcl::Precision::mixed,
+                                       int max_iterations = 1000) {
     lcl::SolveOptions options;
     options.solver = solver;
     options.precision = precision;

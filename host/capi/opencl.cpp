@@ -141,7 +141,6 @@ lcl_status lcl_field_import_cl(lcl_field field, cl_mem memory, size_t offset, lc
                                cl_event* done) {
     return guarded([&] {
         const CallerRows rows = checked(field, memory, offset, type, stride);
-        field->A->system->A->vertex_order();  // its first use uploads it, and that must not stand behind the events
         wait_for_events(field->field.context(), event_count, events);
         if (!field->transform) field->transform = fitted(*field, rows);
         transfer(*field, rows, Direction::into_field);
@@ -155,7 +154,6 @@ lcl_status lcl_field_export_cl(lcl_field field, cl_mem memory, size_t offset, lc
     return guarded([&] {
         const CallerRows rows = checked(field, memory, offset, type, stride);
         if (!field->transform) throw InvalidArgument("the field holds no values yet");
-        field->A->system->A->vertex_order();
         wait_for_events(field->field.context(), event_count, events);
         transfer(*field, rows, Direction::out_of_field);
         give_marker(field->field.context(), done);

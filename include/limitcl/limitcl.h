@@ -45,6 +45,13 @@ extern "C" {
 #define LCL_API
 #endif
 
+/* Any number may come from a C caller: C++ has to know that it fits. */
+#ifdef __cplusplus
+#define LCL_ENUM(name) enum name : int32_t
+#else
+#define LCL_ENUM(name) enum name
+#endif
+
 /* ---------------------------------------------------------------- version */
 
 #define LCL_VERSION_MAJOR 0
@@ -111,7 +118,7 @@ typedef struct lcl_device_info {
 LCL_API int32_t lcl_device_count(void);
 LCL_API lcl_status lcl_device_get_info(int32_t index, lcl_device_info* info);
 
-typedef enum lcl_log_level { LCL_LOG_ERROR = 0, LCL_LOG_WARNING = 1, LCL_LOG_INFO = 2, LCL_LOG_DEBUG = 3 } lcl_log_level;
+typedef LCL_ENUM(lcl_log_level) { LCL_LOG_ERROR = 0, LCL_LOG_WARNING = 1, LCL_LOG_INFO = 2, LCL_LOG_DEBUG = 3 } lcl_log_level;
 typedef void (*lcl_log_callback)(void* user, int32_t level, const char* message);
 
 typedef struct lcl_context_options {
@@ -146,7 +153,7 @@ LCL_API lcl_status lcl_context_selftest(lcl_context context, lcl_selftest_callba
 
 /* ---------------------------------------------------------------- meshes */
 
-typedef enum lcl_format {
+typedef LCL_ENUM(lcl_format) {
     LCL_FORMAT_BY_ENDING = 0,
     LCL_FORMAT_OBJ = 1,
     LCL_FORMAT_OFF = 2,
@@ -155,7 +162,7 @@ typedef enum lcl_format {
     LCL_FORMAT_OM = 5
 } lcl_format;
 
-typedef enum lcl_type { LCL_TYPE_DOUBLE = 0, LCL_TYPE_FLOAT = 1 } lcl_type;
+typedef LCL_ENUM(lcl_type) { LCL_TYPE_DOUBLE = 0, LCL_TYPE_FLOAT = 1 } lcl_type;
 
 /** A mesh in the caller's arrays. */
 typedef struct lcl_mesh_data {
@@ -199,7 +206,7 @@ LCL_API lcl_status lcl_mesh_set_points(lcl_mesh mesh, const double* points, size
 LCL_API lcl_status lcl_mesh_set_normals(lcl_mesh mesh, const double* normals);
 
 /** Sharp features, beside the boundary. */
-typedef enum lcl_boundary {
+typedef LCL_ENUM(lcl_boundary) {
     LCL_BOUNDARY_DEFAULT = 0,         /**< the file's `t interpolateboundary`, else edge-and-corner */
     LCL_BOUNDARY_EDGE_AND_CORNER = 1, /**< boundary curves; vertices with one face are corners */
     LCL_BOUNDARY_EDGE_ONLY = 2,       /**< boundary curves everywhere */
@@ -236,7 +243,7 @@ typedef struct lcl_mesh_info {
 
 /** Counts. On a mesh that is not sound, edges and what follows from them are -1 and the call still succeeds. */
 LCL_API lcl_status lcl_mesh_get_info(lcl_mesh mesh, lcl_mesh_info* info);
-typedef enum lcl_histogram { LCL_HISTOGRAM_FACE_DEGREES = 0, LCL_HISTOGRAM_VALENCES = 1 /**< edges at a vertex */ } lcl_histogram;
+typedef LCL_ENUM(lcl_histogram) { LCL_HISTOGRAM_FACE_DEGREES = 0, LCL_HISTOGRAM_VALENCES = 1 /**< edges at a vertex */ } lcl_histogram;
 /** Keys in ascending order with their counts; `size` receives the number of all. Valences need a sound mesh (LCL_ERROR_BAD_INPUT). */
 LCL_API lcl_status lcl_mesh_get_histogram(lcl_mesh mesh, lcl_histogram which, int32_t* keys, int32_t* counts, size_t capacity, size_t* size);
 
@@ -266,7 +273,7 @@ LCL_API lcl_status lcl_mesh_get_property(lcl_mesh mesh, int32_t index, double* v
  * hold them. */
 LCL_API lcl_status lcl_mesh_set_property(lcl_mesh mesh, const char* name, const double* values);
 
-typedef enum lcl_note {
+typedef LCL_ENUM(lcl_note) {
     LCL_NOTE_WARNING = 0,           /**< sentences on what could not be kept or was doubtful, from reading, refining and writing */
     LCL_NOTE_IGNORED_TAG = 1,       /**< names of OBJ tags that were ignored */
     LCL_NOTE_UNKNOWN_STATEMENT = 2, /**< "NAME COUNT" of OBJ statements that were skipped */
@@ -277,13 +284,13 @@ LCL_API const char* lcl_mesh_note(lcl_mesh mesh, lcl_note kind, int32_t index);
 
 /* ---------------------------------------------------------------- schemes */
 
-typedef enum lcl_scheme {
+typedef LCL_ENUM(lcl_scheme) {
     LCL_SCHEME_DEFAULT = 0 /**< Loop if all faces are triangles, else Catmull-Clark */,
     LCL_SCHEME_CATMULL_CLARK = 1,
     LCL_SCHEME_LOOP = 2,
     LCL_SCHEME_DOO_SABIN = 3
 } lcl_scheme;
-typedef enum lcl_mask { LCL_MASK_CATMULL = 0 /**< Doo-Sabin paper, chapter 4 */, LCL_MASK_CLASSIC = 1 /**< Doo & Sabin 1978 */ } lcl_mask;
+typedef LCL_ENUM(lcl_mask) { LCL_MASK_CATMULL = 0 /**< Doo-Sabin paper, chapter 4 */, LCL_MASK_CLASSIC = 1 /**< Doo & Sabin 1978 */ } lcl_mask;
 
 typedef struct lcl_scheme_options {
     uint32_t struct_size;
@@ -341,7 +348,7 @@ typedef struct lcl_diagnosis {
 /** What can be said of the spectrum before solving. Some 20 passes at the first call, then remembered. */
 LCL_API lcl_status lcl_operator_diagnose(lcl_operator A, lcl_diagnosis* diagnosis);
 
-typedef enum lcl_precision {
+typedef LCL_ENUM(lcl_precision) {
     LCL_PRECISION_MIXED = 0 /**< float sweeps, residuals and corrections in double or float pairs */,
     LCL_PRECISION_SINGLE = 1,
     LCL_PRECISION_DOUBLE = 2
@@ -354,7 +361,7 @@ LCL_API lcl_status lcl_limit_points(lcl_operator A, const double* points, size_t
 
 /* ---------------------------------------------------------------- solving A P = M */
 
-typedef enum lcl_solver {
+typedef LCL_ENUM(lcl_solver) {
     LCL_SOLVER_AUTO = 0,
     LCL_SOLVER_PIA = 1,
     LCL_SOLVER_WPIA = 2,
