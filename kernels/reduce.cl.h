@@ -14,14 +14,14 @@
 #define LCL_GROUP_STORE_SUM(value, scratch, out, place) out[place] = (value)
 #else
 #define LCL_SCRATCH(type, name) __local type name[LCL_GROUP];
-#define LCL_GROUP_STORE_(value, scratch, out, place, COMBINE)                                      \
-    scratch[lane] = (value);                                                                       \
-    for (int half_size = LCL_GROUP / 2; half_size > 0; half_size /= 2) {                           \
-        barrier(CLK_LOCAL_MEM_FENCE);                                                              \
-        if (lane < half_size) scratch[lane] = COMBINE(scratch[lane], scratch[lane + half_size]);   \
-    }                                                                                              \
-    if (lane == 0) out[place] = scratch[0];                                                        \
-    barrier(CLK_LOCAL_MEM_FENCE)
+// The first work-item combines: Intel's CPU runtime (2026.2) returned wrong values for a tree with a barrier in its loop, and a block's rows cost far more than this.
+#define LCL_GROUP_STORE_(value, scratch, out, place, COMBINE)                                               \
+    scratch[lane] = (value);                                                                                \
+    barrier(CLK_LOCAL_MEM_FENCE);                                                                           \
+    if (lane == 0) {                                                                                        \
+        for (int other = 1; other < LCL_GROUP; ++other) scratch[0] = COMBINE(scratch[0], scratch[other]);   \
+        out[place] = scratch[0];                                                                            \
+    }
 #define LCL_SUM_OF(a, b) ((a) + (b))
 #define LCL_GROUP_STORE_MAX(value, scratch, out, place) LCL_GROUP_STORE_(value, scratch, out, place, LCL_LARGER)
 #define LCL_GROUP_STORE_SUM(value, scratch, out, place) LCL_GROUP_STORE_(value, scratch, out, place, LCL_SUM_OF)

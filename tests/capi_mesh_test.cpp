@@ -210,6 +210,7 @@ TEST_CASE("each defect is refused with its places, by validation and by every fu
         CHECK(info.faces == c.shape.mesh.face_count());
         CHECK(info.edges == -1);
         CHECK(info.corners == -1);
+        CHECK((info.diagonal == 0) == (std::string(c.kind) == "index-range"));
         const lcl_suitability suitability = suitability_of(mesh.get(), LCL_SCHEME_OPTIONS_INIT);
         CHECK(suitability.suitable == 0);
         CHECK_THAT(suitability.reason, Catch::Matchers::Contains(c.sentence));

@@ -24,7 +24,8 @@ struct Release {
     void operator()(lcl_field handle) const { lcl_field_release(handle); }
     void operator()(lcl_task handle) const { lcl_task_release(handle); }
 };
-template <class Raw> using Owned = std::unique_ptr<std::remove_pointer_t<Raw>, Release>;
+template <class Raw>
+using Owned = std::unique_ptr<std::remove_pointer_t<Raw>, Release>;
 using Context = Owned<lcl_context>;
 using Mesh = Owned<lcl_mesh>;
 using Operator = Owned<lcl_operator>;
@@ -169,7 +170,8 @@ inline std::vector<double> with_channels(const std::vector<double>& points, int 
     std::vector<double> values(rows * channels);
     for (std::size_t v = 0; v < rows; ++v)
         for (int c = 0; c < channels; ++c)
-            values[v * channels + c] = c < 3 ? points[3 * v + c] : std::pow(10, c % 4) * std::sin(points[3 * v] * (c - 1) + points[3 * v + 1] - 2 * points[3 * v + 2]);
+            values[v * channels + c] =
+                c < 3 ? points[3 * v + c] : std::pow(10, c % 4) * std::sin(points[3 * v] * (c - 1) + points[3 * v + 1] - 2 * points[3 * v + 2]);
     return values;
 }
 

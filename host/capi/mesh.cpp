@@ -369,10 +369,13 @@ lcl_status lcl_mesh_get_info(lcl_mesh mesh, lcl_mesh_info* info) {
         out.faces = polygons.face_count();
         out.edges = out.boundary_edges = out.boundary_loops = out.components = out.creases = out.corners = -1;
         std::vector<std::uint8_t> used(polygons.vertex_count, 0);
-        for (const Index v : polygons.face_vertices)
+        bool are_there = true;
+        for (const Index v : polygons.face_vertices) {
             if (v >= 0 && v < polygons.vertex_count) used[v] = 1;
+            else are_there = false;
+        }
         out.isolated_vertices = polygons.vertex_count - std::accumulate(used.begin(), used.end(), Index{0});
-        out.diagonal = bounding_box_diagonal(polygons);
+        if (are_there) out.diagonal = bounding_box_diagonal(polygons);
         try {
             out = sound_info(*mesh, out);
         } catch (const BadInput&) {  // counts of a mesh that is not sound: lcl_mesh_validate says why

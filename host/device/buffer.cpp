@@ -71,4 +71,6 @@ Buffer::~Buffer() {
     if (memory_) clReleaseMemObject(memory_);
 }
 
+std::size_t memory_bytes(cl_mem memory) { return memory_value<std::size_t>(memory, CL_MEM_SIZE); }
+
 }  // namespace lcl

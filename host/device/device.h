@@ -58,6 +58,7 @@ public:
     }
     ~Event();
     cl_event get() const { return event_; }
+    cl_event release() { return std::exchange(event_, nullptr); }  ///< hands the reference on
     void wait() const;
     double seconds() const;  ///< waits, then start to end on the device; needs a profiling context, else DeviceError; 0 for an empty event
 
@@ -143,6 +144,9 @@ private:
     std::unique_ptr<Programs> programs_;
     std::size_t allocated_bytes_ = 0;
 };
+
+/// Size of a caller's memory object.
+std::size_t memory_bytes(cl_mem memory);
 
 /// Global and local size in work-items; the global size must be a multiple of the local one. local 0: the driver's choice.
 struct LaunchSize {

@@ -20,8 +20,10 @@ void split(double value, float& high, float& low) {
 struct Travelling {
     std::array<Event, 2> events;
     ~Travelling() {
-        for (const Event& event : events)
-            if (event.get() != nullptr) clWaitForEvents(1, std::array<cl_event, 1>{event.get()}.data());
+        for (const Event& event : events) try {
+                event.wait();
+            } catch (...) {  // it has ended, which is all that matters here
+            }
     }
 };
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "host/apply/transfer.h"
 #include "host/solve/limit_system.h"
 
 namespace lcl {
@@ -219,35 +220,17 @@ private:
         Buffer buffer(A_.shared_context(), caller.size() * sizeof(float), "a self-test buffer");
         context.write(buffer, 0, caller.size() * sizeof(float), caller.data(), "uploading a self-test buffer");
         Field field = A_.make_field(channels_, real_);
-        move(field, buffer, true);
+        const CallerRows rows_of_caller{&buffer, 0, static_cast<std::size_t>(channels_), false};
+        const Transform transform{std::vector<double>(channels_, 0.25), std::vector<double>(channels_, 2.0)};
+        import_rows(A_, transform, rows_of_caller, field);
         std::vector<double> expected(x_.size());
         for (std::size_t row = 0; row < rows; ++row)
             for (int c = 0; c < channels_; ++c) expected[row * channels_ + c] = (caller[plan_.vertex_of_row[row] * channels_ + c] - 0.25) * 2;
         compare("lcl_import_points", download(field), expected, 4 * tolerance_);
         context.fill_zero(buffer, "clearing a self-test buffer");
-        move(field, buffer, false);
+        export_rows(A_, transform, field, rows_of_caller);
         context.read(buffer, 0, back.size() * sizeof(float), back.data(), "reading a self-test buffer");
         compare("lcl_export_points", {back.begin(), back.end()}, {caller.begin(), caller.end()}, 4 * std::ldexp(1, -24));
-    }
-
-    void move(Field& field, const Buffer& buffer, bool into_field) {
-        const char* kernel = into_field ? "lcl_import_points" : "lcl_export_points";
-        Context& context = A_.context();
-        for (std::size_t b = 0; b < field.blocks().size(); ++b) {
-            const ChannelBlock& block = field.blocks()[b];
-            std::vector<double> frame;
-            for (const double value : {0.25, 2.0, 0.5}) frame.insert(frame.end(), block.width, value);
-            const std::vector<float> narrow(frame.begin(), frame.end());
-            const bool as_double = real_ == Real::full;
-            Buffer frame_buffer(A_.shared_context(), frame.size() * sizeof(double), "a self-test frame");
-            context.write(frame_buffer, 0, frame.size() * (as_double ? sizeof(double) : sizeof(float)),
-                          as_double ? static_cast<const void*>(frame.data()) : narrow.data(), "uploading a self-test frame");
-            launch(context, context.kernel("transfer", kernel, kernel_options(context, real_, block.width, 1) + " -D LCL_SOURCE=float"),
-                   {static_cast<std::size_t>(plan_.vertex_count), 0}, static_cast<cl_uint>(plan_.vertex_count), static_cast<cl_ulong>(channels_), cl_ulong{0},
-                   static_cast<cl_uint>(block.first), static_cast<cl_uint>(block.count), A_.vertex_order(), frame_buffer, into_field ? buffer : field.buffer(b),
-                   into_field ? field.buffer(b) : buffer);
-            context.finish();
-        }
     }
 
     const std::unique_ptr<LimitSystem> system_;

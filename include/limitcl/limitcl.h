@@ -236,7 +236,7 @@ typedef struct lcl_mesh_info {
     int32_t vertices, faces, edges, boundary_edges, boundary_loops, components, isolated_vertices;
     int32_t creases; /**< sharp edges off the boundary */
     int32_t corners; /**< vertices that stay, isolated ones not counted */
-    double diagonal; /**< of the bounding box of the vertices that a face uses, model units */
+    double diagonal; /**< of the bounding box of the vertices that a face uses, model units; 0 where a face uses a vertex that is not there */
 } lcl_mesh_info;
 #define LCL_MESH_INFO_INIT \
     { (uint32_t)sizeof(lcl_mesh_info), 0, 0, 0, 0, 0, 0, 0, 0, 0, 0.0 }
