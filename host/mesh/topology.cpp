@@ -182,18 +182,20 @@ std::vector<Index> connected_components(const Topology& topology, Index& count) 
 }
 
 double bounding_box_diagonal(const PolygonMesh& mesh) {
-    if (mesh.face_vertices.empty()) return 0;
     double low[3], high[3];
     std::fill_n(low, 3, std::numeric_limits<double>::infinity());
     std::fill_n(high, 3, -std::numeric_limits<double>::infinity());
+    bool is_empty = true;
     for (const Index v : mesh.face_vertices) {
+        if (v < 0 || v >= mesh.vertex_count) continue;
+        is_empty = false;
         for (int c = 0; c < 3; ++c) {
             const double x = mesh.positions[3 * static_cast<std::size_t>(v) + c];
             low[c] = std::min(low[c], x);
             high[c] = std::max(high[c], x);
         }
     }
-    return std::hypot(high[0] - low[0], high[1] - low[1], high[2] - low[2]);
+    return is_empty ? 0 : std::hypot(high[0] - low[0], high[1] - low[1], high[2] - low[2]);
 }
 
 }  // namespace lcl

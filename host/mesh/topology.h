@@ -80,7 +80,7 @@ std::vector<std::vector<Index>> boundary_loops(const Topology& topology);
 /// Connected component of each vertex by shared faces, numbered by their smallest vertex; isolated vertices have -1. `count` receives their number.
 std::vector<Index> connected_components(const Topology& topology, Index& count);
 
-/// Diagonal of the bounding box of the vertices that a face uses; 0 for a mesh without faces.
+/// Diagonal of the bounding box of the vertices that a face uses, corners without a vertex left out; 0 for a mesh without faces.
 double bounding_box_diagonal(const PolygonMesh& mesh);
 
 }  // namespace lcl
