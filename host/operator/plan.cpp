@@ -34,6 +34,7 @@ public:
         fill_rings();
         fill_weighted();
         fill_scaling();
+        measure_reach();
         return std::move(plan_);
     }
 
@@ -60,11 +61,11 @@ private:
         return *parts[kind];
     }
 
-    /// Morton order inside each part, then equal shapes together inside each block of rows.
+    /// Breadth-first order inside each part, then equal shapes together inside each block of rows.
     void order_rows() {
         std::array<Index, part_count> place{plan_.fixed.first_row, plan_.curves.first_row, plan_.darts.first_row, plan_.smooth.first_row, plan_.row_count};
         plan_.vertex_of_row.resize(plan_.vertex_count);
-        for (const Index v : morton_order(mesh_.positions, plan_.vertex_count)) plan_.vertex_of_row[place[static_cast<int>(classes_[v].kind)]++] = v;
+        for (const Index v : breadth_first_order(topology_, mesh_.positions)) plan_.vertex_of_row[place[static_cast<int>(classes_[v].kind)]++] = v;
         const auto first = plan_.vertex_of_row.begin();
         const auto used = std::stable_partition(first, first + plan_.fixed.end_row(), [&](Index v) { return topology_.is_isolated(v); });
         plan_.isolated_count = static_cast<Index>(used - first);
@@ -179,6 +180,41 @@ private:
             bound = std::min(bound, lambda_min_bound(options_, n, lambda));
         }
         plan_.lambda_min_bound = plan_.has_valence_2 && options_.scheme != Scheme::doo_sabin ? std::numeric_limits<double>::quiet_NaN() : std::max(0.0, bound);
+    }
+
+    /// How far each block's rows reach, in blocks: rows of a part's blocks are equally many but for the last.
+    void measure_reach() {
+        const Part& smooth = plan_.smooth;
+        std::vector<Index> reaches(smooth.block_count, 0);
+        parallel_for(
+            smooth.block_count,
+            [&](std::size_t begin, std::size_t end) {
+                for (std::size_t b = begin; b < end; ++b) reaches[b] = reach_of(plan_.blocks[smooth.first_block + b]);
+            },
+            4);
+        for (const Index reach : reaches) plan_.reach = std::max(plan_.reach, reach);
+    }
+
+    Index reach_of(const Block& block) const {
+        Index lowest = block.first_row, highest = block.first_row;
+        const auto take = [&](const Index* columns, std::size_t count) {
+            for (std::size_t i = 0; i < count; ++i) {
+                if (columns[i] < plan_.smooth.first_row || columns[i] >= plan_.smooth.end_row()) continue;
+                lowest = std::min(lowest, columns[i]);
+                highest = std::max(highest, columns[i]);
+            }
+        };
+        for (Index r = block.first_run; r < block.first_run + block.run_count; ++r) {
+            const Run& run = plan_.runs[r];
+            if (run.shape != RowShape::weighted) {
+                take(plan_.indices.data() + run.index_offset, static_cast<std::size_t>(run.count) * run.stride());
+                continue;
+            }
+            const std::uint32_t begin = plan_.weighted_offsets[run.index_offset];
+            take(plan_.weighted_indices.data() + begin, plan_.weighted_offsets[run.index_offset + run.count] - begin);
+        }
+        const auto block_of = [&](Index row) { return (row - plan_.smooth.first_row) / plan_options_.block_rows; };
+        return std::max(block_of(highest) - block_of(block.first_row), block_of(block.first_row) - block_of(lowest));
     }
 
     const PolygonMesh& mesh_;
