@@ -10,7 +10,7 @@
 #define LCL_RELAX_PLUS(row, ax, own, third_term)                                            \
     {                                                                                       \
         const realn residual = m[row] - (ax);                                               \
-        worst = LCL_LARGER_SQUARE(worst, dot(residual, residual));                          \
+        worst = LCL_LARGER_SQUARE(worst, lcl_square(residual));                          \
         y[row] = a * x[row] + (b + b_jacobi * lcl_inverse(own)) * residual third_term;      \
     }
 #define LCL_RELAX(row, ax, own) LCL_RELAX_PLUS(row, ax, own, )

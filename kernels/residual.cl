@@ -14,7 +14,7 @@ __kernel __attribute__((reqd_work_group_size(LCL_GROUP, 1, 1))) void lcl_residua
 #define LCL_RESIDUAL(row, ax, own)                                            \
     {                                                                         \
         const floatn residual = lcl_narrow(lcl_add(LCL_ROW(m[row]), lcl_minus(ax)));   \
-        const float square = dot(residual, residual);                         \
+        const float square = lcl_square_of_floats(residual);                         \
         worst = LCL_LARGER(worst, square);                                    \
         r[row] = residual;                                                    \
     }

@@ -41,7 +41,9 @@ RealValue row_value(bool as_double, const ChannelBlock& block, const ChannelValu
     const auto at = [&](int i) { return i < block.count ? values[block.first + i] : 0.0; };
     if (block.width == 1) return real_value(as_double, {at(0)});
     if (block.width == 2) return real_value(as_double, {at(0), at(1)});
-    return real_value(as_double, {at(0), at(1), at(2), at(3)});
+    RealValue row = real_value(as_double, {at(0), at(1), at(2), at(3)});
+    if (block.width == 8) row.append(as_double, {at(4), at(5), at(6), at(7)});
+    return row;
 }
 
 /// What a kernel has written.

@@ -63,7 +63,7 @@ public:
     /// GS-PIA over the rows of the schedule, in place; no norms.
     void relax_rows(const Schedule& schedule, const Field& m, Field& x);
     /// Waits; largest row norms that the last sweep, wide_residual or cg_update of a field like `like` left for the part. Normalised units;
-    /// `others` is the Euclidean norm over up to four channels here, never less than their largest value.
+    /// `others` is the Euclidean norm over up to eight channels here, never less than their largest value.
     ResidualNorms norms(const Field& like, const Part& part);
 
     /// q = A p; waits for <p, q>_D of each channel.

@@ -16,10 +16,10 @@ constexpr double float_range = 1e37;
 }  // namespace
 
 std::vector<ChannelBlock> channel_blocks(int channels) {
-    const auto width_of = [](int count) { return count > 2 ? 4 : count; };
+    const auto width_of = [](int count) { return count > 4 ? 8 : count > 2 ? 4 : count; };
     std::vector<ChannelBlock> blocks;
     for (int first = 0; first < channels;) {
-        const int count = std::min(channels - first, first == 0 ? 3 : 4);
+        const int count = std::min(channels - first, first == 0 ? 3 : 8);
         blocks.push_back({first, count, width_of(count)});
         first += count;
     }

@@ -15,6 +15,7 @@ namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 constexpr double stage_gain = 1e-4;       // what one stage of float sweeps on a correction gains at most: well above float's floor
+constexpr double float_reach = 5e-7;      // residuals, normalised, that float sweeps on the values themselves are sure to reach
 constexpr double wide_floor = 1e-13;      // residuals of wide fields, normalised, are rounding below
 constexpr double chebyshev_least = 0.02;  // below, conjugate gradients adapt better than an interval does
 constexpr double estimate_margin = 0.95;  // Ritz values lie above lambda_min
@@ -168,10 +169,8 @@ private:
             const Target& target = monitor_->target();
             Target stage{std::max(target.position, stage_gain * norms.position), std::max(target.others, stage_gain * norms.others)};
             if (norms.position + norms.others < wide_floor) stage = {};  // nothing left to refine: the last stage of an exact number of sweeps
-            Field& d = work(LimitSystem::Purpose::correction, x, Real::single);
-            d.fill_zero();
-            iterate(norms, stage, work(LimitSystem::Purpose::right, x, Real::single), d);
-            A_.correct(d, x, part_);
+            if (is_direct(x, stage, before)) iterate(norms, stage, m, x);
+            else add_correction(norms, stage, x);
             const ResidualNorms now = residual(m, x);
             monitor_->replace_last(now);
             const bool helps = now.position + now.others < 0.5 * (norms.position + norms.others);
@@ -187,6 +186,22 @@ private:
                 return now;
             }
         }
+    }
+
+    /// Float sweeps on float fields reach what is asked for, so that corrections of what they leave are not needed: Chebyshev's first stage, whose end is
+    /// measured in any case.
+    bool is_direct(const Field& x, const Target& stage, int iteration) const {
+        const bool is_chebyshev = solver_ == Solver::automatic || solver_ == Solver::chebyshev;
+        return x.real() == Real::single && is_chebyshev && iteration <= 1 && !monitor_->is_exact() && !system_.plan().has_darts() &&
+               stage.position >= float_reach && stage.others >= float_reach;
+    }
+
+    /// d with A d = r, the residual in the field `right`, and x += d.
+    void add_correction(const ResidualNorms& norms, const Target& stage, Field& x) {
+        Field& d = work(LimitSystem::Purpose::correction, x, Real::single);
+        d.fill_zero();
+        iterate(norms, stage, work(LimitSystem::Purpose::right, x, Real::single), d);
+        A_.correct(d, x, part_);
     }
 
     /// One stage from the residual `start` of x.
