@@ -102,7 +102,6 @@ void time_setup(const Arguments& arguments) {
         lcl_diagnosis diagnosis = LCL_DIAGNOSIS_INIT;
         laps.time("setup.all", [&] {
             laps.time("setup.mesh", [&] { mesh = make_mesh(shape); });
-            laps.time("setup.validation", [&] { check(lcl_mesh_validate(mesh.get())); });
             laps.time("setup.operator", [&] { A = make_operator(context, mesh, Scheme::catmull_clark); });
             laps.time("setup.upload", [&] {
                 M = make_field(A);
