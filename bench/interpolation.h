@@ -32,7 +32,7 @@ public:
     DeviceCopy(const DeviceCopy&) = delete;
     DeviceCopy& operator=(const DeviceCopy&) = delete;
     /// Seconds of one copy out of `copies` that are put on the queue together.
-    double seconds(int copies = 10);
+    double seconds(int copies = 50);
 
 private:
     cl_command_queue queue_;

@@ -3,6 +3,7 @@
 
 #include <cstdio>
 #include <stdexcept>
+#include <thread>
 
 namespace bench {
 
@@ -14,6 +15,8 @@ void Laps::print() const {
     }
     std::fflush(stdout);
 }
+
+void rest() { std::this_thread::sleep_for(std::chrono::milliseconds(20)); }
 
 void print_value(const std::string& name, double value) { std::printf("value %s %.9g\n", name.c_str(), value); }
 void print_text(const std::string& name, const std::string& text) { std::printf("text %s %s\n", name.c_str(), text.c_str()); }

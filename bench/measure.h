@@ -16,12 +16,20 @@ inline double seconds_since(Clock::time_point start) { return std::chrono::durat
 class Laps {
 public:
     void add(const std::string& name, double seconds) { laps_[name].push_back(seconds); }
-    /// Seconds of one of `repetitions` calls.
+    /// One call.
     template <class Body>
-    void time(const std::string& name, const Body& body, int repetitions = 1) {
+    void time(const std::string& name, const Body& body) {
         const Clock::time_point start = Clock::now();
-        for (int i = 0; i < repetitions; ++i) body();
-        add(name, seconds_since(start) / repetitions);
+        body();
+        add(name, seconds_since(start));
+    }
+    /// The mean of as many calls as take 50 ms together: what takes less would be timed with caches and cores as the contestant before left them.
+    template <class Body>
+    void time_warm(const std::string& name, const Body& body) {
+        const Clock::time_point start = Clock::now();
+        int calls = 0;
+        for (; calls == 0 || seconds_since(start) < 0.05; ++calls) body();
+        add(name, seconds_since(start) / calls);
     }
     void print() const;
 
@@ -37,6 +45,9 @@ void run_rounds(int runs, const Round& round) {
     for (int i = 0; i < runs; ++i) round(laps);
     laps.print();
 }
+
+/// Between contestants: OpenMP's threads spin for some milliseconds after their work, on cores that the next one needs.
+void rest();
 
 void print_value(const std::string& name, double value);
 void print_text(const std::string& name, const std::string& text);

@@ -72,8 +72,8 @@ void race(const Arguments& arguments) {
     time_cholmod(limit_matrix(shape, Scheme::catmull_clark), shape);
     Interpolation problem(open_device(arguments.device), shape, Scheme::catmull_clark);
     run_rounds(arguments.runs, [&](Laps& laps) {
-        laps.time("cholmod.limitcl.single", [&] { problem.solve(LCL_PRECISION_SINGLE); });
-        laps.time("cholmod.limitcl.mixed", [&] { problem.solve(LCL_PRECISION_MIXED); });
+        laps.time_warm("cholmod.limitcl.single", [&] { problem.solve(LCL_PRECISION_SINGLE); });
+        laps.time_warm("cholmod.limitcl.mixed", [&] { problem.solve(LCL_PRECISION_MIXED); });
     });
 }
 

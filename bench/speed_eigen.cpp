@@ -57,9 +57,10 @@ void race(const Arguments& arguments) {
 
     Interpolation problem(open_device(arguments.device), shape, Scheme::catmull_clark);
     run_rounds(arguments.runs, [&](Laps& laps) {
-        laps.time("eigen.limitcl.single", [&] { problem.solve(LCL_PRECISION_SINGLE); });
-        laps.time("eigen.limitcl.mixed", [&] { problem.solve(LCL_PRECISION_MIXED); });
-        laps.time("eigen.peer", [&] { peer.solve(tolerance); });
+        rest();
+        laps.time_warm("eigen.limitcl.single", [&] { problem.solve(LCL_PRECISION_SINGLE); });
+        laps.time_warm("eigen.limitcl.mixed", [&] { problem.solve(LCL_PRECISION_MIXED); });
+        laps.time_warm("eigen.peer", [&] { peer.solve(tolerance); });
     });
 }
 

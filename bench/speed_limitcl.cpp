@@ -49,7 +49,7 @@ void time_solves(const Arguments& arguments, const std::string& name, const Shap
     }
     run_rounds(arguments.runs, [&](Laps& laps) {
         laps.add(name + ".copy", copy.seconds());
-        for (const lcl_precision precision : {single, mixed}) laps.time(name + ".solve." + name_of(precision), [&] { problem.solve(precision); });
+        for (const lcl_precision precision : {single, mixed}) laps.time_warm(name + ".solve." + name_of(precision), [&] { problem.solve(precision); });
         if (others) others(problem, laps);
     });
 }
@@ -57,7 +57,7 @@ void time_solves(const Arguments& arguments, const std::string& name, const Shap
 /// One application and both fused sweeps: as PIA takes it (two fields and M), and as Chebyshev does (the field before last, which is overwritten).
 void time_solve(const Arguments& arguments) {
     FieldHandle y;
-    const int repetitions = 10;
+    const int repetitions = 20;
     const auto one_pass = [&](Interpolation& problem, Laps& laps) {
         if (!y) {
             y = make_field(problem.A);
@@ -141,12 +141,12 @@ void time_fields(const Arguments& arguments) {
     lcl_solve_report report = LCL_SOLVE_REPORT_INIT;
     print_value("fields.count", frame_count);
     run_rounds(arguments.runs, [&](Laps& laps) {
-        laps.time("fields.one", [&] { check(lcl_interpolate_field(problem.A.get(), frames[0].get(), &options, problem.P.get(), nullptr)); });
-        laps.time("fields.together", [&] { check(lcl_interpolate_field(problem.A.get(), M.get(), &options, P.get(), &report)); });
+        laps.time_warm("fields.one", [&] { check(lcl_interpolate_field(problem.A.get(), frames[0].get(), &options, problem.P.get(), nullptr)); });
+        laps.time_warm("fields.together", [&] { check(lcl_interpolate_field(problem.A.get(), M.get(), &options, P.get(), &report)); });
         lcl_solve_options warm = options;
         warm.warm_start = 1;
         check(lcl_interpolate_field(problem.A.get(), frames.back().get(), &options, problem.P.get(), nullptr));  // the frame before the first
-        laps.time("fields.frames", [&] {
+        laps.time_warm("fields.frames", [&] {
             for (const FieldHandle& frame : frames) check(lcl_interpolate_field(problem.A.get(), frame.get(), &warm, problem.P.get(), nullptr));
         });
     });
@@ -175,7 +175,7 @@ void time_first_call(const Arguments& arguments) {
 /// Bytes a second that all cores copy (read and written counted), for orientation.
 double memory_bandwidth() {
     const std::size_t threads = std::max(1u, std::thread::hardware_concurrency()), bytes = std::size_t{64} << 20;
-    const int repetitions = 10;
+    const int repetitions = 20;
     std::vector<std::vector<char>> from(threads, std::vector<char>(bytes, 1)), to(threads, std::vector<char>(bytes, 0));
     const Clock::time_point start = Clock::now();
     std::vector<std::thread> workers;

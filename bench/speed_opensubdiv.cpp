@@ -21,7 +21,6 @@ namespace bench {
 namespace {
 
 constexpr double slow = 5;         // seconds, from which 3 runs are enough
-constexpr int repetitions = 5;     // of what takes milliseconds, so that caches are as warm as for a caller who does little else
 constexpr int cheapest_level = 0;  // of refinement round irregular vertices: patches there are Gregory's, whose corners lie on the limit surface
 
 using Refiner = std::unique_ptr<Far::TopologyRefiner>;
@@ -116,12 +115,12 @@ void race_apply(const Arguments& arguments) {
             check(lcl_operator_apply(problem.A.get(), problem.M.get(), problem.P.get()));
             problem.finish();
         };
-        laps.time("apply.limitcl", limitcl_apply, repetitions);
-        laps.time(
-            "apply.cpu-stencils", [&] { stencils.apply<Osd::CpuEvaluator>(); }, repetitions);
-        laps.time(
-            "apply.omp-stencils", [&] { stencils.apply<Osd::OmpEvaluator>(); }, repetitions);
-        laps.time("apply.primvar-refiner", refiner_limit, repetitions);
+        rest();
+        laps.time_warm("apply.limitcl", limitcl_apply);
+        laps.time_warm("apply.cpu-stencils", [&] { stencils.apply<Osd::CpuEvaluator>(); });
+        laps.time_warm("apply.omp-stencils", [&] { stencils.apply<Osd::OmpEvaluator>(); });
+        rest();
+        laps.time_warm("apply.primvar-refiner", refiner_limit);
     });
     const std::vector<double> ours = problem.control_points();
     print_value("apply.stencil-scale", static_cast<double>(shape.vertex_count()) / coarse.vertex_count());
