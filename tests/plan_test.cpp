@@ -200,7 +200,7 @@ TEST_CASE("ghosts come last, without rows, and the owned rows are those of the w
 
 TEST_CASE("the Morton order is a permutation that keeps neighbours together, and equal positions in order", "[plan][ordering]") {
     const auto mesh = shapes::shuffled(shapes::grid_quads(40, 40), 2).mesh;
-    const std::vector<Index> order = morton_order(mesh.positions, mesh.vertex_count);
+    const Array<Index> order = morton_order(mesh.positions, mesh.vertex_count);
     CHECK(std::set<Index>(order.begin(), order.end()).size() == static_cast<std::size_t>(mesh.vertex_count));
     double along = 0;
     for (std::size_t i = 1; i < order.size(); ++i) {
@@ -209,7 +209,7 @@ TEST_CASE("the Morton order is a permutation that keeps neighbours together, and
         along += std::sqrt(square);
     }
     CHECK(along / static_cast<double>(order.size()) < 3 * 0.05);  // the edges are 0.05 long; in the shuffled order steps are of length 1
-    CHECK(morton_order(std::vector<double>(30, 7.5), 10) == std::vector<Index>{0, 1, 2, 3, 4, 5, 6, 7, 8, 9});
+    CHECK(morton_order(std::vector<double>(30, 7.5), 10) == Array<Index>{0, 1, 2, 3, 4, 5, 6, 7, 8, 9});
     CHECK(morton_order({}, 0).empty());
 }
 

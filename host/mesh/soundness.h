@@ -9,9 +9,6 @@ namespace lcl {
 /// No index out of range, no face with fewer than three corners or with a vertex twice, offsets that fit.
 bool corners_are_sound(const PolygonMesh& mesh);
 
-/// Every coordinate is finite.
-bool positions_are_finite(const PolygonMesh& mesh);
-
 /// Fills `topology` from a mesh with sound corners. False where it is no consistently oriented manifold; `topology` is then unfinished.
 bool connect(const PolygonMesh& mesh, Topology& topology);
 

@@ -87,6 +87,9 @@ Topology build_topology(const PolygonMesh& mesh);
 /// The topology of a mesh that build_topology takes, or none.
 std::optional<Topology> topology_if_sound(const PolygonMesh& mesh);
 
+/// Every coordinate is finite.
+bool positions_are_finite(const PolygonMesh& mesh);
+
 /// The boundary loops, each as its outgoing boundary half-edges in order.
 std::vector<std::vector<Index>> boundary_loops(const Topology& topology);
 

@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "host/operator/ordering.h"
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
+#include <cstdlib>
+#include <limits>
 
-#include "host/parallel.h"
+#include "host/counting_sort.h"
 
 namespace lcl {
 namespace {
@@ -22,41 +25,103 @@ struct Keyed {
     Index vertex;
 };
 
-std::vector<Keyed> morton_keys(const std::vector<double>& positions, Index count) {
-    std::array<double, 3> low{0, 0, 0}, high{0, 0, 0};
-    for (int axis = 0; axis < 3 && count > 0; ++axis) low[axis] = high[axis] = positions[axis];
-    for (std::size_t i = 0; i < positions.size(); ++i) {
-        low[i % 3] = std::min(low[i % 3], positions[i]);
-        high[i % 3] = std::max(high[i % 3], positions[i]);
-    }
-    const double extent = std::max({high[0] - low[0], high[1] - low[1], high[2] - low[2]});
-    const double scale = extent > 0 ? 1023 / extent : 0;  // one scale for all axes keeps cells cubic
-    std::vector<Keyed> keyed(count);
+struct Grid {
+    std::array<double, 3> low{0, 0, 0};
+    double scale = 0;  // one for all axes keeps cells cubic
+};
+
+Grid fit_grid(const std::vector<double>& positions, std::size_t count, int axis_bits) {
+    constexpr double infinity = std::numeric_limits<double>::infinity();
+    struct Box {
+        std::array<double, 3> low{infinity, infinity, infinity}, high{-infinity, -infinity, -infinity};
+        void add(const double* low_point, const double* high_point) {
+            for (int axis = 0; axis < 3; ++axis) low[axis] = std::min(low[axis], low_point[axis]), high[axis] = std::max(high[axis], high_point[axis]);
+        }
+    };
+    const std::size_t pieces = piece_count(count);
+    std::vector<Box> boxes(pieces);
+    for_each_piece(count, pieces, [&](std::size_t piece, std::size_t begin, std::size_t end) {
+        Box box;
+        for (std::size_t v = begin; v < end; ++v) box.add(&positions[3 * v], &positions[3 * v]);
+        boxes[piece] = box;
+    });
+    Box all;
+    for (const Box& box : boxes) all.add(box.low.data(), box.high.data());
+    const double extent = std::max({all.high[0] - all.low[0], all.high[1] - all.low[1], all.high[2] - all.low[2]});
+    return {all.low, extent > 0 ? ((1 << axis_bits) - 1) / extent : 0};
+}
+
+std::uint32_t hilbert(std::uint32_t morton, int bits);
+
+Array<Keyed> morton_keys(const std::vector<double>& positions, std::size_t count, int axis_bits) {
+    const Grid grid = fit_grid(positions, count, axis_bits);
+    static const bool use_hilbert = std::getenv("HILBERT") != nullptr;
+    Array<Keyed> keyed(count);
     parallel_for(count, [&](std::size_t begin, std::size_t end) {
         for (std::size_t v = begin; v < end; ++v) {
             std::uint32_t key = 0;
-            for (int axis = 0; axis < 3; ++axis) key |= spread(static_cast<std::uint32_t>((positions[3 * v + axis] - low[axis]) * scale)) << axis;
+            for (int axis = 0; axis < 3; ++axis) key |= spread(static_cast<std::uint32_t>((positions[3 * v + axis] - grid.low[axis]) * grid.scale)) << axis;
+            if (use_hilbert) key = hilbert(key, axis_bits);
             keyed[v] = {key, static_cast<Index>(v)};
         }
     });
     return keyed;
 }
 
+std::uint32_t compact(std::uint32_t x) {
+    x &= 0x09249249;
+    x = (x | (x >> 2)) & 0x030C30C3;
+    x = (x | (x >> 4)) & 0x0300F00F;
+    x = (x | (x >> 8)) & 0x030000FF;
+    return (x | (x >> 16)) & 0x3FF;
+}
+
+std::uint32_t hilbert(std::uint32_t morton, int bits) {
+    std::uint32_t X[3] = {compact(morton), compact(morton >> 1), compact(morton >> 2)};
+    std::uint32_t M = 1u << (bits - 1), P, Q, t;
+    for (Q = M; Q > 1; Q >>= 1) {
+        P = Q - 1;
+        for (int i = 0; i < 3; i++)
+            if (X[i] & Q) X[0] ^= P;
+            else { t = (X[0] ^ X[i]) & P; X[0] ^= t; X[i] ^= t; }
+    }
+    for (int i = 1; i < 3; i++) X[i] ^= X[i - 1];
+    t = 0;
+    for (Q = M; Q > 1; Q >>= 1)
+        if (X[2] & Q) t ^= Q - 1;
+    for (int i = 0; i < 3; i++) X[i] ^= t;
+    return spread(X[0]) << 2 | spread(X[1]) << 1 | spread(X[2]);
+}
+
+/// One stable pass of a radix sort: put(place, element) for every element, in the order of its digit.
+template <class Put>
+void sort_by_digit(const Array<Keyed>& keyed, int shift, int digit_bits, const Put& put) {
+    const std::size_t digits = std::size_t{1} << digit_bits, pieces = piece_count(keyed.size());
+    Array<Index> places(pieces * digits);
+    const auto digit = [&](const Keyed& k) { return (k.key >> shift) & (digits - 1); };
+    for_each_piece(keyed.size(), pieces, [&](std::size_t piece, std::size_t begin, std::size_t end) {
+        Index* const counts = places.data() + piece * digits;
+        std::fill_n(counts, digits, 0);
+        for (std::size_t i = begin; i < end; ++i) ++counts[digit(keyed[i])];
+    });
+    counts_to_places<Index>(places, digits, pieces, nullptr);
+    for_each_piece(keyed.size(), pieces, [&](std::size_t piece, std::size_t begin, std::size_t end) {
+        Index* const place = places.data() + piece * digits;
+        for (std::size_t i = begin; i < end; ++i) put(place[digit(keyed[i])]++, keyed[i]);
+    });
+}
+
 }  // namespace
 
-std::vector<Index> morton_order(const std::vector<double>& positions, Index vertex_count) {
-    constexpr int digit_bits = 10, digits = 1 << digit_bits;
-    std::vector<Keyed> keyed = morton_keys(positions, vertex_count), sorted(keyed.size());
-    for (int pass = 0; pass < 3; ++pass) {
-        std::array<std::size_t, digits + 1> place{};
-        const int shift = pass * digit_bits;
-        for (const Keyed& k : keyed) ++place[((k.key >> shift) & (digits - 1)) + 1];
-        for (int d = 0; d < digits; ++d) place[d + 1] += place[d];
-        for (const Keyed& k : keyed) sorted[place[(k.key >> shift) & (digits - 1)]++] = k;
+Array<Index> morton_order(const std::vector<double>& positions, Index vertex_count) {
+    const int axis_bits = std::getenv("AXIS") ? atoi(std::getenv("AXIS")) : 10, passes = std::getenv("PASSES") ? atoi(std::getenv("PASSES")) : 3, digit_bits = (3 * axis_bits + passes - 1) / passes;
+    Array<Keyed> keyed = morton_keys(positions, vertex_count, axis_bits), sorted(keyed.size());
+    for (int pass = 0; pass + 1 < passes; ++pass) {
+        sort_by_digit(keyed, pass * digit_bits, digit_bits, [&](Index place, const Keyed& k) { sorted[place] = k; });
         keyed.swap(sorted);
     }
-    std::vector<Index> order(keyed.size());
-    for (std::size_t i = 0; i < keyed.size(); ++i) order[i] = keyed[i].vertex;
+    Array<Index> order(keyed.size());
+    sort_by_digit(keyed, (passes - 1) * digit_bits, digit_bits, [&](Index place, const Keyed& k) { order[place] = k.vertex; });
     return order;
 }
 
