@@ -203,7 +203,7 @@ TEST_CASE("ghosts come last, without rows, and the owned rows are those of the w
 TEST_CASE("the breadth-first order is a permutation in which faces span two levels at most, isolated vertices last", "[plan][ordering]") {
     const auto shape = shapes::with_isolated_vertex(shapes::shuffled(shapes::grid_quads(40, 30), 2), 5);
     const Topology topology = build_topology(shape.mesh);
-    const std::vector<Index> order = breadth_first_order(topology, shape.mesh.positions);
+    const Array<Index> order = breadth_first_order(topology, shape.mesh.positions);
     REQUIRE(std::set<Index>(order.begin(), order.end()).size() == static_cast<std::size_t>(shape.mesh.vertex_count));
     CHECK(order.back() == 5);
     std::vector<Index> place(order.size());

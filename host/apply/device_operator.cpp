@@ -95,8 +95,8 @@ Buffer DeviceOperator::upload(const void* data, std::size_t bytes, const char* w
 }
 
 /// Kernels take row numbers doubled (rows.cl.h).
-Buffer DeviceOperator::upload_doubled(const std::vector<Index>& rows, const char* what) {
-    std::vector<std::uint32_t> doubled(rows.size());
+Buffer DeviceOperator::upload_doubled(const Array<Index>& rows, const char* what) {
+    Array<std::uint32_t> doubled(rows.size());
     parallel_for(rows.size(), [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) doubled[i] = 2 * static_cast<std::uint32_t>(rows[i]);
     });

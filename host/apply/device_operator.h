@@ -90,7 +90,7 @@ private:
     cl_kernel kernel(const char* file, const char* name, const Field& field, std::size_t block);
     LaunchSize size(const Part& part) const;
     Buffer upload(const void* data, std::size_t bytes, const char* what);
-    Buffer upload_doubled(const std::vector<Index>& rows, const char* what);
+    Buffer upload_doubled(const Array<Index>& rows, const char* what);
     Buffer upload_reals(const std::vector<double>& values, Real real, const char* what);
 
     std::shared_ptr<Context> context_;

@@ -31,40 +31,33 @@ Index end_of_longest_axis(const Topology& topology, const std::vector<double>& p
 
 }  // namespace
 
-std::vector<Index> breadth_first_order(const Topology& topology, const std::vector<double>& positions) {
+Array<Index> breadth_first_order(const Topology& topology, const std::vector<double>& positions) {
     const Index n = topology.vertex_count;
-    std::vector<Index> order;
-    order.reserve(n);
+    Array<Index> order(n);
     std::vector<std::uint8_t> vertex_is_met(n, 0), face_is_met(topology.face_count, 0);
+    Index met = 0, next = 0;
     const auto meet = [&](Index v) {
         if (vertex_is_met[v]) return;
         vertex_is_met[v] = 1;
-        order.push_back(v);
+        order[met++] = v;
     };
-    const auto visit_face = [&](Index face) {
+    const auto meet_face = [&](Index face) {
         if (face_is_met[face]) return;
         face_is_met[face] = 1;
         for (Index corner = topology.face_offsets[face]; corner < topology.face_offsets[face + 1]; ++corner) meet(topology.face_vertices[corner]);
     };
-    std::size_t next = 0;
     const auto spread_from = [&](Index start) {
-        for (meet(start); next < order.size(); ++next) {
-            const Index first = topology.vertex_half_edge[order[next]];
-            Index h = first;
-            do {
-                visit_face(topology.half_edge_face[h]);
-                h = topology.rotate(h);
-            } while (h >= 0 && h != first);
-        }
+        for (meet(start); next < met; ++next)
+            for (Index i = topology.fan_offsets[order[next]]; i < topology.fan_offsets[order[next] + 1]; ++i)
+                meet_face(topology.half_edge_face[topology.fan_half_edges[i]]);
     };
-    if (n > 0) {
-        const Index start = end_of_longest_axis(topology, positions);
-        if (!topology.is_isolated(start)) spread_from(start);
-    }
+    if (n == 0) return order;
+    const Index start = end_of_longest_axis(topology, positions);
+    if (!topology.is_isolated(start)) spread_from(start);
     for (Index v = 0; v < n; ++v)
         if (!vertex_is_met[v] && !topology.is_isolated(v)) spread_from(v);
     for (Index v = 0; v < n; ++v)
-        if (topology.is_isolated(v)) order.push_back(v);
+        if (topology.is_isolated(v)) order[met++] = v;
     return order;
 }
 

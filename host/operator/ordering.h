@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "host/array.h"
 #include "host/mesh/topology.h"
 
 namespace lcl {
@@ -11,6 +12,6 @@ namespace lcl {
 /// apart, so rows of A reach only as far as two levels are wide: neighbours stay close in memory, and sweeps can follow each other through the rows
 /// (level-based blocking of matrix powers: Alappat et al. 2022). The first component starts at an end of the mesh's longest axis, which keeps levels narrow.
 /// Linear time.
-std::vector<Index> breadth_first_order(const Topology& topology, const std::vector<double>& positions);
+Array<Index> breadth_first_order(const Topology& topology, const std::vector<double>& positions);
 
 }  // namespace lcl

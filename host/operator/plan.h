@@ -42,14 +42,14 @@ struct PlanOptions {
 /// the vertices, and inside a block rows of equal shape stand together, so that sweeps find neighbours in cache and take no branch a row.
 struct Plan {
     Index vertex_count = 0, row_count = 0;
-    std::vector<Index> vertex_of_row;  ///< vertex_count: caller's vertex; ghosts at the end
-    std::vector<Index> row_of_vertex;  ///< the inverse
+    Array<Index> vertex_of_row;  ///< vertex_count: caller's vertex; ghosts at the end
+    Array<Index> row_of_vertex;  ///< the inverse
     Part fixed, curves, darts, smooth;
     Index reach = 0;           ///< smooth rows depend on smooth rows of blocks at most so many before or after their own
     Index isolated_count = 0;  ///< the first rows of the fixed part: vertices without a face, left out of sizes and norms
     std::vector<Run> runs;
     std::vector<Block> blocks;
-    std::vector<Index> indices;                      ///< neighbours of ring rows, Run::stride() a row: edge ends, then diagonals
+    Array<Index> indices;                            ///< neighbours of ring rows, Run::stride() a row: edge ends, then diagonals
     std::vector<std::uint32_t> weighted_offsets{0};  ///< weighted_count + 1
     std::vector<Index> weighted_indices;
     std::vector<double> weighted_weights;
