@@ -153,6 +153,49 @@ void time_fields(const Arguments& arguments) {
     print_value("fields.iterations.together", report.iterations);
 }
 
+/// Ten vertices of one neighbourhood, or spread over the shape.
+std::vector<std::int32_t> vertices_to_move(const Shape& shape, bool together) {
+    std::vector<std::int32_t> vertices;
+    for (std::size_t corner = shape.faces.size() / 2; vertices.size() < 10; ++corner)
+        if (std::find(vertices.begin(), vertices.end(), shape.faces[corner]) == vertices.end()) vertices.push_back(shape.faces[corner]);
+    if (!together)
+        for (std::size_t i = 0; i < vertices.size(); ++i) vertices[i] = static_cast<std::int32_t>(i * shape.points.size() / 3 / vertices.size());
+    return vertices;
+}
+
+/// Moves the vertices by 1 % of the radius and back, again and again; then a full solve of the same field shows how far the local answer is from it.
+void time_local(const Arguments& arguments, const std::string& name, const Shape& shape, const std::vector<std::int32_t>& vertices) {
+    Interpolation problem(open_device(arguments.device), shape, Scheme::catmull_clark);
+    problem.solve(single);
+    Shape moved = shape;
+    lcl_solve_options options = LCL_SOLVE_OPTIONS_INIT;
+    options.precision = single;
+    lcl_solve_report report = LCL_SOLVE_REPORT_INIT;
+    bool is_moved = false;
+    const auto edit = [&] {
+        is_moved = !is_moved;
+        std::vector<double> values;
+        for (const std::int32_t v : vertices)
+            for (int c = 0; c < 3; ++c) values.push_back(moved.points[3 * v + c] = (is_moved ? 1.01 : 1.0) * shape.points[3 * v + c]);
+        check(lcl_solve_local(problem.A.get(), problem.M.get(), problem.P.get(), vertices.data(), vertices.size(), values.data(), &options, &report));
+    };
+    run_rounds(arguments.runs, [&](Laps& laps) { laps.time_warm(name, edit); });
+    if (!is_moved) edit();
+    const std::vector<double> local = problem.control_points();
+    problem.solve(single);
+    const std::vector<double> full = problem.control_points();
+    double difference = 0;
+    for (std::size_t i = 0; i < full.size(); ++i) difference = std::max(difference, std::abs(full[i] - local[i]));
+    print_value(name + ".error", relative_error(limit_matrix(shape, Scheme::catmull_clark), moved, local));
+    print_value(name + ".difference", difference / diagonal(moved));
+    print_value(name + ".rows", report.changed_rows);
+}
+
+void time_local_solves(const Arguments& arguments) {
+    const Shape shape = quad_sphere(arguments.level);
+    for (const bool together : {true, false}) time_local(arguments, together ? "local.together" : "local.spread", shape, vertices_to_move(shape, together));
+}
+
 /// Everything a caller with arrays does, at the start of a process and again.
 void time_first_call(const Arguments& arguments) {
     const Shape shape = quad_sphere(arguments.level);
@@ -204,8 +247,9 @@ void write_q(const Arguments& arguments) { check(lcl_mesh_write(make_mesh(quad_s
 
 void run_part(const Arguments& arguments) {
     const std::vector<std::pair<const char*, void (*)(const Arguments&)>> parts = {
-        {"device", describe_device}, {"solve", time_solve},   {"shapes", time_other_shapes},   {"growth", time_growth},
-        {"setup", time_setup},       {"fields", time_fields}, {"first-call", time_first_call}, {"write", write_q}};
+        {"device", describe_device},     {"solve", time_solve}, {"shapes", time_other_shapes},
+        {"growth", time_growth},         {"setup", time_setup}, {"fields", time_fields},
+        {"first-call", time_first_call}, {"write", write_q},    {"local", time_local_solves}};
     for (const auto& [name, part] : parts)
         if (arguments.part == name) return part(arguments);
     throw std::runtime_error("'" + arguments.part + "' is not a part");
