@@ -35,7 +35,8 @@ void pack_rows(RowFormat format, const ChannelBlock& block, std::size_t rows, vo
     switch (block.width) {
         case 1: return pack_width<1>(format, block.count, rows, out, get);
         case 2: return pack_width<2>(format, block.count, rows, out, get);
-        default: return pack_width<4>(format, block.count, rows, out, get);
+        case 4: return pack_width<4>(format, block.count, rows, out, get);
+        default: return pack_width<8>(format, block.count, rows, out, get);
     }
 }
 
@@ -64,7 +65,8 @@ void unpack_rows(RowFormat format, const ChannelBlock& block, std::size_t rows, 
     switch (block.width) {
         case 1: return unpack_width<1>(format, block.count, rows, in, put);
         case 2: return unpack_width<2>(format, block.count, rows, in, put);
-        default: return unpack_width<4>(format, block.count, rows, in, put);
+        case 4: return unpack_width<4>(format, block.count, rows, in, put);
+        default: return unpack_width<8>(format, block.count, rows, in, put);
     }
 }
 

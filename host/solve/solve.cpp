@@ -55,6 +55,7 @@ public:
 
     /// The residual of what x then holds, in double or pairs of floats, over all rows.
     ResidualNorms run(const Field& m, Field& x) {
+        fields_are_float_ = x.real() == Real::single;
         const ResidualNorms start = residual(m, x);
         if (is_refused()) return measure(start);
         if (is_done_at_once(start)) return start;
@@ -261,6 +262,7 @@ private:
     }
 
     std::string reason() const {
+        constexpr const char* not_in_float = "the values are kept in float, which cannot hold them to this tolerance: use fields of double precision";
         const std::string after = " after " + std::to_string(monitor_->iteration()) + " iterations";
         const char* other = options_.solver == Solver::automatic ? ": allow more iterations, or use a larger alpha" : ": use solver auto";
         switch (monitor_->outcome()) {
@@ -269,10 +271,11 @@ private:
                        (solver_ == Solver::jacobi ? ": Jacobi is sure to converge only under diagonal dominance (lambda of 1/3 or more), use auto" : other);
             case Outcome::stalled:
                 if (monitor_->history().back() < wide_floor) return "the tolerance lies below what the arithmetic reaches" + after + ": use a larger one";
+                if (options_.precision == Precision::mixed && fields_are_float_) return not_in_float;
                 return "the residual no longer falls" + after + (options_.precision == Precision::single ? ": single precision ends here, use mixed" : other);
             case Outcome::indefinite:
                 return "a negative eigenvalue was met, the limit operator is indefinite: use a larger alpha (0.5; alpha auto does so) or a lambda above 0";
-            case Outcome::converged: return "the values are kept in float, which cannot hold them to this tolerance: use fields of double precision";
+            case Outcome::converged: return not_in_float;
             case Outcome::exhausted: break;
         }
         return "the tolerance was not reached" + after + other;
@@ -284,6 +287,7 @@ private:
     const double unit_;  // model units of 1 in the fields
     Solver solver_ = Solver::automatic;
     Part part_;
+    bool fields_are_float_ = false;
     std::unique_ptr<Monitor> monitor_;
     SolveReport report_;
 };
