@@ -51,11 +51,11 @@ public:
     int rows() const { return rows_; }
     double diagonal() const { return diagonal_; }
 
-    /// New rows: the old ones moved by up to `amplitude` diagonals (further channels: by so much of 1).
+    /// New rows: the old ones moved by up to `amplitude` diagonals (further channels: by so many thousands).
     std::vector<double> moved(const std::vector<int32_t>& vertices, double amplitude, shapes::Random& random) const {
         std::vector<double> values;
         for (const int32_t v : vertices)
-            for (int c = 0; c < channels_; ++c) values.push_back(m_[v * channels_ + c] + amplitude * (c < 3 ? diagonal_ : 1) * random.symmetric());
+            for (int c = 0; c < channels_; ++c) values.push_back(m_[v * channels_ + c] + amplitude * (c < 3 ? diagonal_ : 1000) * random.symmetric());
         return values;
     }
 
@@ -184,7 +184,8 @@ TEST_CASE("rows that keep their points take the new ones to the bit, however sma
         for (const double amplitude : {0.1, 1e-9}) {
             std::vector<int32_t> vertices(session.rows());
             std::iota(vertices.begin(), vertices.end(), 0);
-            session.edit(vertices, session.moved(vertices, amplitude, random));
+            const lcl_solve_report report = session.edit(vertices, session.moved(vertices, amplitude, random));
+            CHECK(report.max_error == Approx(session.residual()).epsilon(1e-6));  // of the values as the fields hold them
             const std::vector<double> m = download(session.M(), session.rows()), p = session.points();
             for (int v = 0; v < session.rows(); ++v) {
                 if (a(v, v) != 1) continue;
@@ -257,6 +258,20 @@ TEST_CASE("the full solve takes over where many vertices are moved", "[local][ca
     CHECK(session.residual() <= tolerance * session.diagonal() * (1 + 1e-9));
 }
 
+TEST_CASE("the full solve takes over where the operator is nearly singular", "[local][capi]") {
+    for (const int levels : {3, 4}) {  // too many sweeps, too many rows
+        const shapes::Shape shape = shapes::rough(shapes::dual_of(shapes::icosphere(levels)), 0.001, 1);
+        CAPTURE(shape.mesh.vertex_count);
+        Session session(shape);
+        shapes::Random random(1);
+        const std::vector<double> value = session.moved({7}, 0.01, random);
+        const lcl_solve_report report = session.edit({7}, value);
+        CHECK(report.changed_rows == session.rows());
+        CHECK(report.solver == LCL_SOLVER_CG);
+        CHECK(session.residual() <= tolerance * session.diagonal() * (1 + 1e-9));
+    }
+}
+
 TEST_CASE("a local solve goes on where P was no solution", "[local][capi]") {
     const shapes::Shape shape = shapes::rough(shapes::torus_quads(120, 110), 0.01, 1);
     const Operator A = make_operator(shape);
@@ -291,6 +306,7 @@ TEST_CASE("local solves carry 1 to 9 channels", "[local][capi][channels]") {
         shapes::Random random(channels);
         const std::vector<int32_t> vertices{0, 10, 24, 31};
         const lcl_solve_report report = session.edit(vertices, session.moved(vertices, 0.05, random));
+        CHECK(report.solver == LCL_SOLVER_GS);
         CHECK(report.channel_error <= tolerance);
         CHECK((report.channel_error > 0) == (channels > 3));
         const std::vector<double> p = session.points(), m = download(session.M(), session.rows());

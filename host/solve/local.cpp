@@ -12,6 +12,7 @@ namespace {
 constexpr std::size_t least_region = 4096;    // rows: below, a region is never too large
 constexpr Index region_share = 16;            // beyond this part of the rows the full solve is faster
 constexpr std::size_t least_work = 1u << 20;  // relaxations, some 60 ms: below, there are never too many
+constexpr int most_sweeps = 100;              // of solver auto; well-conditioned operators take 10 to 40
 constexpr double ring_share = 0.4;            // of the rings in which an error of the edit's size would decay by the general bound: with fewer, rows are read
                                               // in more turns; with more, many are read that stay as they are
 constexpr double least_eigenvalue = 0.01, largest_eigenvalue = 0.9;  // for that bound
@@ -37,7 +38,7 @@ SolveReport LocalSolver::solve(const LocalEdit& edit, const Transform& transform
     if (options.progress) progress = [&](int iteration, double residual, double target) { return options.progress(iteration, residual * unit, target * unit); };
     Monitor monitor(options.max_iterations, target_, progress);
     const Spectrum& spectrum = spectrum_of(system_);
-    const bool is_local = !spectrum.singular && !spectrum.indefinite && start(edit, M, P) && relax(monitor);
+    const bool is_local = !spectrum.singular && !spectrum.indefinite && start(edit, M, P) && relax(monitor, options.solver == Solver::automatic);
     SolveReport report;
     if (is_local) report = conclude(monitor, unit);
     const auto before_write = std::chrono::steady_clock::now();
@@ -211,7 +212,7 @@ ResidualNorms LocalSolver::largest(const std::vector<Index>& locals) const {
 }
 
 /// Until no row is above the tolerance. False where the full solve is to take over.
-bool LocalSolver::relax(Monitor& monitor) {
+bool LocalSolver::relax(Monitor& monitor, bool is_automatic) {
     const std::size_t most_work = std::max<std::size_t>(least_work, 2 * static_cast<std::size_t>(system_.plan().row_count));
     for (monitor.begin_stage(target_);; monitor.advance()) {
         if (queue_.empty()) measure();
@@ -219,7 +220,8 @@ bool LocalSolver::relax(Monitor& monitor) {
         sweep();
         if (is_stuck_) return true;
         const bool only_closed_ones_are_left = !closed_.empty() && closed_.size() == queue_.size();  // reading rows takes as long as many sweeps
-        if (work_ > most_work || (only_closed_ones_are_left && !open_rows(closed_))) return false;
+        const bool is_slow = work_ > most_work || (is_automatic && monitor.iteration() >= most_sweeps);
+        if (is_slow || (only_closed_ones_are_left && !open_rows(closed_))) return false;
     }
     return monitor.outcome() == Outcome::converged || monitor.outcome() == Outcome::exhausted;
 }

@@ -38,7 +38,7 @@ private:
     void look_at_reached();
     void fetch();
     void settle_fixed_rows();
-    bool relax(Monitor& monitor);
+    bool relax(Monitor& monitor, bool is_automatic);
     void sweep();
     bool relax_row(Index local);
     void measure();

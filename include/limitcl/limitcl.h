@@ -439,7 +439,8 @@ LCL_API lcl_status lcl_interpolate_field(lcl_operator A, lcl_field M, const lcl_
  * that has changed. So the largest residual of all rows is at most the larger of the tolerance and what it was before, and the distance of P to the exact
  * solution at most |A^-1|_inf times that. Where P was not within the tolerance before, the update goes on as far as that leads.
  * By over-relaxed Gauss-Seidel on the host, on the rows above the tolerance only. The full solve, warm-started, takes over where the operator is singular or
- * indefinite, where more than a sixteenth of the rows (and 4096) would be looked at, and where the iteration is slow; then changed_rows is vertex_count.
+ * indefinite, where more than a sixteenth of the rows (and 4096) would be looked at, and where the iteration is slow (AUTO: 100 sweeps); then changed_rows
+ * is vertex_count.
  * options: solver is AUTO or GS, exact_sweeps 0; precision as for lcl_interpolate_field; warm_start, weight and certify are not looked at but by the full solve.
  * report: max_error over the rows whose residual can have changed, iterations are sweeps, seconds_download and _upload the transfers of single rows.
  * Vertices that keep their points (corners, outside the subset, isolated) take the new ones in P as they are.
