@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <optional>
 
 #include "host/parallel.h"
 #include "kernels/types.cl.h"
@@ -12,7 +13,7 @@ namespace lcl {
 namespace {
 
 constexpr int cpu_schedule_chunk = 256;  // rows of a Gauss-Seidel step that one work-item of a CPU takes
-constexpr Index phase_blocks_per_unit = 12;
+constexpr Index phase_blocks_per_unit = 6;
 
 bool is_double(const Context& context, Real real) { return real == Real::full || (real == Real::wide && context.device().has_double); }
 
@@ -175,15 +176,16 @@ void DeviceOperator::sweep(const Sweep& s, const Field& m, const Field& x, const
 
 // The rows of all sweeps of a phase have to stay in cache: each sweep's own blocks and those up to the next one's.
 DeviceOperator::Phases DeviceOperator::phases(std::size_t sweeps, const Field& field, const Part& part) const {
-    const Phases one_by_one{std::max(1, part.block_count), 0, std::min<Index>(static_cast<Index>(sweeps), LCL_CHAIN)};
+    const Index all = std::max(1, part.block_count);
+    const Phases one_by_one{all, all, std::min<Index>(static_cast<Index>(sweeps), LCL_CHAIN)};
     const bool is_smooth = part.first_block == plan_->smooth.first_block && part.block_count == plan_->smooth.block_count;
     if (!is_smooth || part.row_count == 0) return one_by_one;
     const std::size_t row_bytes = 3 * field.row_bytes(0) + sizeof(Index) * plan_->indices.size() / part.row_count;
     if (row_bytes * part.row_count <= shape_.cache_bytes) return one_by_one;  // all of it stays in cache
     for (Index depth = one_by_one.sweeps; depth > 1; --depth) {
-        const Index width = (shape_.phase_blocks + depth - 1) / depth;
-        const std::size_t rows = static_cast<std::size_t>(depth) * (plan_->reach + width) * shape_.block_rows;
-        if (rows * row_bytes <= shape_.cache_bytes && rows < static_cast<std::size_t>(part.row_count)) return {width, plan_->reach, depth};
+        const Index width = (shape_.phase_blocks + depth - 1) / depth, lag = plan_->reach + 2 * width;
+        const std::size_t rows = static_cast<std::size_t>(depth) * lag * shape_.block_rows;
+        if (rows * row_bytes <= shape_.cache_bytes && rows < static_cast<std::size_t>(part.row_count)) return {width, lag, depth};
     }
     return one_by_one;
 }
@@ -207,22 +209,32 @@ void DeviceOperator::run_phases(const Phases& phases, const Sweep* sweeps, const
         const Sweep sweep = s < phases.sweeps ? sweeps[s] : Sweep{};
         chain.append(as_double, {sweep.a, sweep.b, sweep.b_jacobi, sweep.c});
     }
-    const Index stride = static_cast<Index>(plan_->blocks.size()), step = phases.reach + phases.width;
-    const Index last_phase = (part.block_count - 1 + (phases.sweeps - 1) * step) / phases.width;
+    const auto stride = static_cast<Index>(plan_->blocks.size());
     for (std::size_t k = 0; k < x.blocks().size(); ++k) {
         const cl_kernel relax = kernel("relax", "lcl_relax_phase", x, k);
-        for (Index phase = 0; phase <= last_phase; ++phase) {
-            // sweeps with a block in [phase * width - s * step, + width)
-            const Index over = phase * phases.width - (part.block_count - 1);
-            const Index first = over > 0 ? (over + step - 1) / step : 0;
-            const Index last = std::min(phases.sweeps - 1, (phase * phases.width + phases.width - 1) / step);
-            if (last < first) continue;
-            const std::size_t groups = static_cast<std::size_t>(last - first + 1) * phases.width * shape_.group;
-            launch(*context_, relax, {groups, static_cast<std::size_t>(shape_.group)}, phase, first, phases.width, phases.reach, part.first_block,
-                   part.block_count, stride, blocks_, runs_, weights(x.real(), false), indices_, weighted_offsets_, weighted_indices_, weights(x.real(), true),
-                   chain, m.buffer(k), x.buffer(k), y.buffer(k), partials(x).norms[k]);
-        }
+        set_arguments(relax, 0, 0, phases.width, phases.lag, part.first_block, part.block_count, stride, blocks_, runs_, weights(x.real(), false), indices_,
+                      weighted_offsets_, weighted_indices_, weights(x.real(), true), chain, m.buffer(k), x.buffer(k), y.buffer(k), partials(x).norms[k]);
+        enqueue_phases(phases, part, relax);
     }
+}
+
+void DeviceOperator::enqueue_phases(const Phases& phases, const Part& part, cl_kernel relax) {
+    std::optional<Pipeline> pipeline;
+    if (phases.lag > phases.width) pipeline.emplace(*context_);
+    const Index last_phase = (part.block_count - 1 + (phases.sweeps - 1) * phases.lag) / phases.width;
+    for (Index phase = 0; phase <= last_phase; ++phase) {
+        // sweeps with a block in [phase * width - s * lag, + width)
+        const Index over = phase * phases.width - (part.block_count - 1);
+        const Index first = over > 0 ? (over + phases.lag - 1) / phases.lag : 0;
+        const Index last = std::min(phases.sweeps - 1, (phase * phases.width + phases.width - 1) / phases.lag);
+        const std::size_t groups = static_cast<std::size_t>(std::max(0, last - first + 1)) * phases.width;
+        const LaunchSize size{groups * shape_.group, static_cast<std::size_t>(shape_.group)};
+        set_argument(relax, 0, phase);
+        set_argument(relax, 1, first);
+        if (pipeline) pipeline->enqueue(relax, size);
+        else enqueue(*context_, relax, size);
+    }
+    if (pipeline) pipeline->join();
 }
 
 void DeviceOperator::wide_residual(const Field& m, const Field& x, Field& r, const Part& part) {

@@ -51,9 +51,9 @@ public:
     /// Sweeps one after the other, three-term: each takes the newest field as x, and overwrites the one before, which is its d; `x` is the newest before and
     /// after. Waits; the norms of m - A x before each sweep. On a CPU the sweeps follow each other through the smooth part while its rows are in cache.
     std::vector<ResidualNorms> chain(const std::vector<Sweep>& sweeps, const Field& m, Field& x, Field& y, const Part& part);
-    /// How a chain runs: blocks that a sweep takes in a phase, blocks that a phase of the next one stays behind beside these, sweeps at a time.
+    /// How a chain runs: blocks that a sweep takes in a phase, blocks that each sweep lags behind the one before it, sweeps at a time.
     struct Phases {
-        Index width, reach, sweeps;
+        Index width, lag, sweeps;
     };
     Phases phases(std::size_t sweeps, const Field& field, const Part& part) const;
     /// r = m - A x in double or pairs of floats, m and x wide or single, r single; norms as above.
@@ -83,6 +83,7 @@ private:
     const Buffer& weights(Real real, bool weighted_rows);
     const Buffer& scaling(Real real);
     Partials& partials(const Field& field);
+    void enqueue_phases(const Phases& phases, const Part& part, cl_kernel relax);
     void run_phases(const Phases& phases, const Sweep* sweeps, const Field& m, Field& x, Field& y, const Part& part);
     std::vector<ResidualNorms> norms_of_sweeps(const Field& like, const Part& part, std::size_t sweeps);
     ScheduleArrays& schedule_arrays(const Schedule& schedule, Real real);

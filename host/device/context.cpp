@@ -212,16 +212,40 @@ void set_argument_bytes(cl_kernel kernel, unsigned place, const void* value, std
     check_argument(clSetKernelArg(kernel, place, bytes, value), kernel, place);
 }
 
-Event enqueue(Context& context, cl_kernel kernel, LaunchSize size) {
+Event enqueue(Context& context, cl_kernel kernel, LaunchSize size) { return enqueue_on(context, context.queue(), kernel, size, {}); }
+
+Event enqueue_on(Context& context, cl_command_queue queue, cl_kernel kernel, LaunchSize size, const Event& after) {
     if (size.global == 0) return {};
+    const std::vector<cl_event> waits = list_of(after);
     cl_event event = nullptr;
-    const int code = clEnqueueNDRangeKernel(context.queue(), kernel, 1, nullptr, &size.global, size.local ? &size.local : nullptr, 0, nullptr, &event);
+    const int code = clEnqueueNDRangeKernel(queue, kernel, 1, nullptr, &size.global, size.local ? &size.local : nullptr, static_cast<cl_uint>(waits.size()),
+                                            list_of(waits), &event);
     if (code != CL_SUCCESS) {
         check(code, "clEnqueueNDRangeKernel",
               "starting " + kernel_name(kernel) + " with " + std::to_string(size.global) + " work-items in groups of " + std::to_string(size.local) + " on " +
                   context.device().name);
     }
     return Event(event);
+}
+
+Pipeline::Pipeline(Context& context) : context_(context), before_{Event(), Event(), context.marker()} {
+    check(clFlush(context.queue()), "clFlush", "starting a pipeline of kernels");
+}
+
+// Its own queue makes a launch wait for the one two before it, and an event for the one three before it, which is on the other queue.
+void Pipeline::enqueue(cl_kernel kernel, LaunchSize size) {
+    const cl_command_queue queue = on_second_ ? context_.transfer_queue_ : context_.queue_;
+    const Event& other = count_ == 1 ? before_[1] : before_[0];  // the second launch: what was on the kernels' queue before the first
+    Event event = enqueue_on(context_, queue, kernel, size, other);
+    check(clFlush(queue), "clFlush", "starting a kernel of a pipeline");
+    before_ = {before_[1], before_[2], std::move(event)};
+    on_second_ = !on_second_;
+    ++count_;
+}
+
+void Pipeline::join() {
+    const Event& newest_of_second = on_second_ ? before_[1] : before_[2];
+    if (count_ > 1) context_.wait_for({newest_of_second.get()});
 }
 
 }  // namespace lcl

@@ -5,6 +5,7 @@
 #define CL_TARGET_OPENCL_VERSION 120
 #include <CL/cl.h>
 
+#include <array>
 #include <cstddef>
 #include <memory>
 #include <string>
@@ -156,6 +157,7 @@ public:
 
 private:
     friend class Buffer;
+    friend class Pipeline;
     struct Programs;  // built programs and kernels by (file, options)
     Context() = default;
     DeviceInfo device_;
@@ -184,12 +186,38 @@ void set_argument(cl_kernel kernel, unsigned place, const T& value) {
 /// Enqueues on the context's kernel queue; a global size of 0 does nothing.
 Event enqueue(Context& context, cl_kernel kernel, LaunchSize size);
 
-/// Sets the arguments in order, checks every result, and enqueues.
+/// The same on any queue of the context, after an event that the queue does not wait for by itself.
+Event enqueue_on(Context& context, cl_command_queue queue, cl_kernel kernel, LaunchSize size, const Event& after);
+
+/// Sets the arguments in order and checks every result.
 template <class... Arguments>
-Event launch(Context& context, cl_kernel kernel, LaunchSize size, const Arguments&... arguments) {
+void set_arguments([[maybe_unused]] cl_kernel kernel, const Arguments&... arguments) {
     unsigned place = 0;
     (set_argument(kernel, place++, arguments), ...);
+}
+
+/// Sets the arguments and enqueues.
+template <class... Arguments>
+Event launch(Context& context, cl_kernel kernel, LaunchSize size, const Arguments&... arguments) {
+    set_arguments(kernel, arguments...);
     return enqueue(context, kernel, size);
 }
+
+/// Launches each of which may begin while the one before it still runs, but not before the one before that has ended: two queues take turns, so that no
+/// compute unit waits for the last work-group of every launch.
+class Pipeline {
+public:
+    /// Launches begin after what is on the kernels' queue now.
+    explicit Pipeline(Context& context);
+    void enqueue(cl_kernel kernel, LaunchSize size);
+    /// What is put on the kernels' queue from now on waits for all launches.
+    void join();
+
+private:
+    Context& context_;
+    std::array<Event, 3> before_;  // of the three newest launches, oldest first
+    bool on_second_ = false;
+    int count_ = 0;
+};
 
 }  // namespace lcl
