@@ -7,7 +7,7 @@
 #include <catch2/catch.hpp>
 
 #include "host/apply/host_operator.h"
-#include "host/apply/excerpt.h"
+#include "host/operator/excerpt.h"
 #include "host/operator/ordering.h"
 #include "tests/solver_support.h"
 

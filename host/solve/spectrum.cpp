@@ -3,7 +3,7 @@
 #include <cmath>
 #include <limits>
 
-#include "host/apply/excerpt.h"
+#include "host/operator/excerpt.h"
 #include "host/solve/limit_system.h"
 #include "host/solve/recurrences.h"
 

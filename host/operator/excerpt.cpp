@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "host/apply/excerpt.h"
+#include "host/operator/excerpt.h"
 
 #include <algorithm>
+#include <cstdint>
 
-#include "host/apply/host_operator.h"
+#include "host/parallel.h"
 
 namespace lcl {
 namespace {
@@ -68,6 +69,38 @@ private:
     Plan out_;
 };
 
+/// The mean of the row's neighbours' and its own value, for every smooth row; other rows count as 1.
+std::vector<float> smoothed(const Plan& plan, const std::vector<float>& values) {
+    std::vector<float> out(plan.vertex_count, 1.0f);
+    const auto sum = [&](const Index* columns, std::size_t count) {
+        float total = 0;
+        for (std::size_t i = 0; i < count; ++i) total += values[columns[i]];
+        return total;
+    };
+    const auto smooth_run = [&](const Run& run) {
+        for (Index i = 0; i < run.count; ++i) {
+            const Index row = run.first + i;
+            if (run.shape == RowShape::weighted) {
+                const std::uint32_t begin = plan.weighted_offsets[run.index_offset + i], count = plan.weighted_offsets[run.index_offset + i + 1] - begin;
+                out[row] = sum(plan.weighted_indices.data() + begin, count) / static_cast<float>(count);  // the row's own vertex is among them
+            } else {
+                const auto stride = static_cast<std::size_t>(run.stride());
+                out[row] = (values[row] + sum(plan.indices.data() + run.index_offset + i * stride, stride)) / static_cast<float>(1 + stride);
+            }
+        }
+    };
+    parallel_for(
+        plan.smooth.block_count,
+        [&](std::size_t begin, std::size_t end) {
+            for (std::size_t b = begin; b < end; ++b) {
+                const Block& block = plan.blocks[plan.smooth.first_block + b];
+                for (Index r = block.first_run; r < block.first_run + block.run_count; ++r) smooth_run(plan.runs[r]);
+            }
+        },
+        4);
+    return out;
+}
+
 }  // namespace
 
 Plan excerpt(const Plan& plan, Index first_block, Index block_count) { return Excerpt(plan, first_block, block_count).make(); }
@@ -75,9 +108,9 @@ Plan excerpt(const Plan& plan, Index first_block, Index block_count) { return Ex
 Part weakest_blocks(const Plan& plan, Index rows) {
     const Part& smooth = plan.smooth;
     if (smooth.row_count <= rows) return smooth;
-    std::vector<double> crowd(plan.diagonal.begin(), plan.diagonal.end());
-    crowd.resize(plan.vertex_count, 1.0);  // ghosts are no weakness
-    for (int pass = 0; pass < 2; ++pass) crowd = host_apply(plan, crowd, 1);
+    std::vector<float> crowd(plan.vertex_count, 1.0f);
+    std::copy(plan.diagonal.begin() + smooth.first_row, plan.diagonal.begin() + smooth.end_row(), crowd.begin() + smooth.first_row);
+    for (int pass = 0; pass < 2; ++pass) crowd = smoothed(plan, crowd);
     const auto weakest = std::min_element(crowd.begin() + smooth.first_row, crowd.begin() + smooth.end_row()) - crowd.begin();
     const auto is_after = [](Index row, const Block& block) { return row < block.first_row; };
     const auto begin = plan.blocks.begin() + smooth.first_block, end = begin + smooth.block_count;
