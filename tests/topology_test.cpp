@@ -42,12 +42,12 @@ TEST_CASE("two quads side by side have the half-edges worked out by hand", "[mes
     const auto mesh = shapes::make("two quads", {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {0, 1, 0}, {1, 1, 0}, {2, 1, 0}}, {{0, 1, 4, 3}, {1, 2, 5, 4}}).mesh;
     const Topology topology = build_topology(mesh);
     CHECK(topology.edge_count == 7);
-    CHECK(topology.twin == std::vector<Index>{-1, 7, -1, -1, -1, -1, -1, 1});
-    CHECK(topology.half_edge_edge == std::vector<Index>{0, 1, 2, 3, 4, 5, 6, 1});
-    CHECK(topology.edge_half_edge == std::vector<Index>{0, 1, 2, 3, 4, 5, 6});
-    CHECK(topology.half_edge_face == std::vector<Index>{0, 0, 0, 0, 1, 1, 1, 1});
-    CHECK(topology.vertex_half_edge == std::vector<Index>{0, 4, 5, 3, 2, 6});
-    CHECK(topology.vertex_face_count == std::vector<Index>{1, 2, 1, 1, 2, 1});
+    CHECK(topology.twin == Array<Index>{-1, 7, -1, -1, -1, -1, -1, 1});
+    CHECK(topology.half_edge_edge == Array<Index>{0, 1, 2, 3, 4, 5, 6, 1});
+    CHECK(topology.edge_half_edge == Array<Index>{0, 1, 2, 3, 4, 5, 6});
+    CHECK(topology.half_edge_face == Array<Index>{0, 0, 0, 0, 1, 1, 1, 1});
+    CHECK(topology.vertex_half_edge == Array<Index>{0, 4, 5, 3, 2, 6});
+    CHECK(topology.vertex_face_count == Array<Index>{1, 2, 1, 1, 2, 1});
     CHECK(topology.rotate(4) == 1);
     CHECK(topology.rotate(1) == -1);
     CHECK(topology.valence(1) == 3);
@@ -157,8 +157,8 @@ TEST_CASE("small closed surfaces whose faces meet in several edges are connected
     SECTION("two triangles back to back") {
         const Topology topology = build_topology(shapes::make("pillow", {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}, {2, 1, 0}}).mesh);
         CHECK(topology.edge_count == 3);
-        CHECK(topology.twin == std::vector<Index>{4, 3, 5, 1, 0, 2});
-        CHECK(topology.vertex_face_count == std::vector<Index>{2, 2, 2});
+        CHECK(topology.twin == Array<Index>{4, 3, 5, 1, 0, 2});
+        CHECK(topology.vertex_face_count == Array<Index>{2, 2, 2});
     }
     SECTION("a torus of 3 by 3 quads") {
         const Topology topology = build_topology(torus(3, 3));

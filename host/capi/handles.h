@@ -115,9 +115,10 @@ namespace lcl {
 /// Scheme of the options, resolved for a mesh, with ranges checked.
 SchemeOptions scheme_options(lcl_mesh_s& mesh, const lcl_scheme_options& options);
 
-/// Fails for a value, or for the first of many, that is no finite number: "M of vertex 5 is nan in channel 1".
+/// Fails for a value, or for the first of many, that is no finite number: "M of vertex 5 is nan in channel 1". Real: float or double.
 void require_finite(double value, Index v, int channel, const char* name);
-void require_finite(const double* values, std::size_t stride, int channels, std::size_t rows, const char* name);
+template <class Real>
+void require_finite(const Real* values, std::size_t stride, int channels, std::size_t rows, const char* name);
 
 /// Marks of a list of vertices; empty for a null list. InvalidArgument for a vertex that is not there.
 std::vector<std::uint8_t> vertex_marks(const int32_t* vertices, std::size_t count, Index vertex_count, const char* name);

@@ -63,10 +63,14 @@ void require_finite(double value, Index v, int channel, const char* name) {
                    {{v}, {}});
 }
 
-void require_finite(const double* values, std::size_t stride, int channels, std::size_t rows, const char* name) {
+template <class Real>
+void require_finite(const Real* values, std::size_t stride, int channels, std::size_t rows, const char* name) {
     for (std::size_t v = 0; v < rows; ++v)
         for (int c = 0; c < channels; ++c) require_finite(values[v * stride + c], static_cast<Index>(v), c, name);
 }
+
+template void require_finite(const float*, std::size_t, int, std::size_t, const char*);
+template void require_finite(const double*, std::size_t, int, std::size_t, const char*);
 
 std::vector<std::uint8_t> vertex_marks(const int32_t* vertices, std::size_t count, Index vertex_count, const char* name) {
     if (count > 0) required(vertices, name);

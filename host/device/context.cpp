@@ -148,6 +148,27 @@ Event Context::read_async(const Buffer& buffer, std::size_t offset, std::size_t 
     return done;
 }
 
+Mapping Context::map(const Buffer& buffer, std::size_t offset, std::size_t bytes, bool for_writing, const Event& after, const std::string& doing) {
+    check_range(buffer, offset, bytes, doing);
+    const std::vector<cl_event> waits = list_of(after);
+    if (!waits.empty()) check(clFlush(queue_), "clFlush", doing);
+    cl_int code = CL_SUCCESS;
+    void* const data = clEnqueueMapBuffer(transfer_queue_, buffer.get(), CL_TRUE, for_writing ? CL_MAP_WRITE_INVALIDATE_REGION : CL_MAP_READ,
+                                          buffer.offset() + offset, bytes, static_cast<cl_uint>(waits.size()), list_of(waits), nullptr, &code);
+    check(code, "clEnqueueMapBuffer", doing);
+    return {transfer_queue_, buffer.get(), data};
+}
+
+void Mapping::unmap(const std::string& doing) {
+    cl_event event = nullptr;
+    check(clEnqueueUnmapMemObject(queue_, memory_, std::exchange(data_, nullptr), 0, nullptr, &event), "clEnqueueUnmapMemObject", doing);
+    Event(event).wait();
+}
+
+Mapping::~Mapping() {
+    if (data_ != nullptr && clEnqueueUnmapMemObject(queue_, memory_, data_, 0, nullptr, nullptr) == CL_SUCCESS) clFinish(queue_);
+}
+
 void Context::copy(const Buffer& from, std::size_t from_offset, const Buffer& to, std::size_t to_offset, std::size_t bytes, const std::string& doing) {
     check_range(from, from_offset, bytes, doing);
     check_range(to, to_offset, bytes, doing);
