@@ -536,7 +536,7 @@ TEST_CASE("open rows of a region know every row that reads them", "[local]") {
 }
 
 TEST_CASE("single rows of fields travel to the bit", "[local][kernel][tiny]") {
-    for (const int channels : {1, 2, 3, 7})
+    for (const int channels : {1, 2, 3, 7, 11})
         for (const lcl::Real real : {lcl::Real::single, lcl::Real::full}) {
             if (real == lcl::Real::full && !solver_test::device_context()->device().has_double) continue;
             CAPTURE(channels, static_cast<int>(real));
@@ -563,4 +563,27 @@ TEST_CASE("single rows of fields travel to the bit", "[local][kernel][tiny]") {
             transfer.read({{&x, &none}, {&y, &none}}, found);
             CHECK(found.empty());
         }
+}
+
+TEST_CASE("the staging memory of single rows grows with their number and width", "[local][kernel]") {
+    const lcl::Index rows = 9000;
+    std::vector<lcl::Index> some(20), all(rows);
+    std::iota(some.begin(), some.end(), 70);
+    std::iota(all.rbegin(), all.rend(), 0);
+    lcl::RowTransfer transfer(solver_test::device_context());
+    for (const int channels : {2, 11, 3}) {
+        const lcl::Real real = solver_test::device_context()->device().has_double ? lcl::Real::full : lcl::Real::single;
+        lcl::Field x(solver_test::device_context(), rows, channels, real);
+        std::vector<double> values(static_cast<size_t>(rows) * channels), found;
+        for (size_t i = 0; i < values.size(); ++i) values[i] = static_cast<double>(i % 65521);
+        x.upload(values.data(), 0, rows);
+        for (const std::vector<lcl::Index>* list : {&some, &all, &some}) {
+            transfer.read({{&x, list}}, found);
+            REQUIRE(found.size() == list->size() * channels);
+            bool is_same = true;
+            for (size_t i = 0; i < found.size(); ++i)
+                is_same = is_same && found[i] == values[(*list)[i / channels] * static_cast<size_t>(channels) + i % channels];
+            CHECK(is_same);
+        }
+    }
 }

@@ -7,7 +7,6 @@ namespace lcl {
 namespace {
 
 constexpr std::size_t least_capacity = 4096;  // rows
-constexpr std::size_t widest_row = 4 * sizeof(double);
 constexpr std::size_t largest_group = 64;
 
 /// Components of one channel block between a field's own number type and doubles.
@@ -31,13 +30,12 @@ std::size_t RowTransfer::prepare(const std::vector<FieldRows>& lists) {
     all_rows_.clear();
     for (const FieldRows& list : lists) all_rows_.insert(all_rows_.end(), list.rows->begin(), list.rows->end());
     const std::size_t count = all_rows_.size();
-    if (count > capacity_ || capacity_ == 0) {
-        const std::size_t capacity = std::max(count + count / 2, least_capacity);
-        rows_ = Buffer(context_, capacity * sizeof(Index), "a list of rows");
-        values_ = Buffer(context_, capacity * widest_row, "rows that travel");
-        raw_.resize(capacity * widest_row);
-        capacity_ = capacity;
-    }
+    std::size_t row_bytes = 0;
+    for (std::size_t b = 0; b < lists.front().field->blocks().size(); ++b) row_bytes = std::max(row_bytes, lists.front().field->row_bytes(b));
+    const std::size_t capacity = std::max(count + count / 2, least_capacity);
+    if (count * sizeof(Index) > rows_.bytes() || !rows_) rows_ = Buffer(context_, capacity * sizeof(Index), "a list of rows");
+    if (count * row_bytes > values_.bytes() || !values_) values_ = Buffer(context_, capacity * row_bytes, "rows that travel");
+    raw_.resize(values_.bytes());
     context_->write(rows_, 0, count * sizeof(Index), all_rows_.data(), "uploading a list of rows");
     return count;
 }

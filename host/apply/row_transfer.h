@@ -32,8 +32,7 @@ private:
     std::shared_ptr<Context> context_;
     std::vector<Index> all_rows_;
     std::vector<unsigned char> raw_;
-    std::size_t capacity_ = 0;
-    Buffer rows_, values_;  // values_: capacity_ rows of one channel block
+    Buffer rows_, values_;  // values_: rows of one channel block
 };
 
 }  // namespace lcl

@@ -128,7 +128,7 @@ bool LocalSolver::open_rings(int rings) {
 }
 
 bool LocalSolver::open_rows(const std::vector<Index>& locals) {
-    for (const Index local : locals) region_.open(local);
+    for (const Index local : locals) region_.open_round(local);
     if (is_too_large()) return false;
     look_at_reached();
     return true;

@@ -120,6 +120,11 @@ void LocalRegion::open(Index local) {
     places_[local].irregular_count = static_cast<Index>(irregular_.size() - first);
 }
 
+void LocalRegion::open_round(Index local) {
+    open(local);
+    for (Index e = 0; e < places_[local].mirrored_count; ++e) open(entries_[places_[local].first + e].other);
+}
+
 void LocalRegion::open_all() {
     const std::size_t end = reached_.size();
     for (std::size_t i = 0; i < end; ++i) open(reached_[i]);

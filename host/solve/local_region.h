@@ -30,6 +30,8 @@ public:
     void start(const std::vector<Index>& rows);
     /// Opens a reached row.
     void open(Index local);
+    /// Opens a reached row and the smooth rows that read it.
+    void open_round(Index local);
     /// Opens all rows that are reached now.
     void open_all();
 
