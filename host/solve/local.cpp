@@ -120,8 +120,10 @@ int LocalSolver::first_rings() const {
 
 bool LocalSolver::open_rings(int rings) {
     for (; rings > 0; --rings) {
+        const std::size_t before = region_.rows().size();
         region_.open_all();
-        if (is_too_large()) return false;
+        const std::size_t rows = region_.rows().size();
+        if (is_too_large(rows + (rings - 1) * (rows - before))) return false;  // rings are seldom smaller than the one before
     }
     look_at_reached();
     return true;
@@ -129,12 +131,12 @@ bool LocalSolver::open_rings(int rings) {
 
 bool LocalSolver::open_rows(const std::vector<Index>& locals) {
     for (const Index local : locals) region_.open_round(local);
-    if (is_too_large()) return false;
+    if (is_too_large(region_.rows().size())) return false;
     look_at_reached();
     return true;
 }
 
-bool LocalSolver::is_too_large() const { return region_.rows().size() > std::max<std::size_t>(least_region, system_.plan().row_count / region_share); }
+bool LocalSolver::is_too_large(std::size_t rows) const { return rows > std::max<std::size_t>(least_region, system_.plan().row_count / region_share); }
 
 /// Residuals of the rows reached since the last time.
 void LocalSolver::look_at_reached() {

@@ -34,7 +34,7 @@ private:
     int first_rings() const;
     bool open_rings(int rings);
     bool open_rows(const std::vector<Index>& locals);
-    bool is_too_large() const;
+    bool is_too_large(std::size_t rows) const;
     void look_at_reached();
     void fetch();
     void settle_fixed_rows();
