@@ -16,6 +16,7 @@ namespace {
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 constexpr double stage_gain = 1e-4;       // what one stage of float sweeps on a correction gains at most: well above float's floor
 constexpr double float_reach = 5e-7;      // residuals, normalised, that float sweeps on the values themselves are sure to reach
+constexpr Index sampled_share = 16;       // of the blocks: what the first residual is taken from
 constexpr double wide_floor = 1e-13;      // residuals of wide fields, normalised, are rounding below
 constexpr double chebyshev_least = 0.02;  // below, conjugate gradients adapt better than an interval does
 constexpr double estimate_margin = 0.95;  // Ritz values lie above lambda_min
@@ -56,7 +57,7 @@ public:
     /// The residual of what x then holds, in double or pairs of floats, over all rows.
     ResidualNorms run(const Field& m, Field& x) {
         fields_are_float_ = x.real() == Real::single;
-        const ResidualNorms start = residual(m, x);
+        const ResidualNorms start = first_residual(m, x);
         if (is_refused()) return measure(start);
         if (is_done_at_once(start)) return start;
         if (part_.row_count == 0) return count_idle_sweeps(start);
@@ -147,6 +148,19 @@ private:
     }
 
     Field& work(LimitSystem::Purpose purpose, const Field& like, Real real) { return system_.work_field(purpose, like.channels(), real); }
+
+    /// Only of some blocks where nothing but the number of sweeps depends on it.
+    ResidualNorms first_residual(const Field& m, const Field& x) {
+        const Index count = part_.block_count / sampled_share;
+        if (count == 0 || is_refused() || !is_direct(x, monitor_->target(), 0)) return residual(m, x);
+        Part sample = part_;
+        sample.first_block += (part_.block_count - count) / 2;
+        sample.block_count = count;
+        Field& r = work(LimitSystem::Purpose::right, x, Real::single);
+        A_.wide_residual(m, x, r, sample);
+        const ResidualNorms some = A_.norms(r, sample);
+        return monitor_->target().met_by(some) ? residual(m, x) : some;
+    }
 
     ResidualNorms iterate_double(ResidualNorms norms, const Field& m, Field& x) {
         for (;;) {
