@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The plan: the operator's rows in their fast order, as plain arrays.
+#include <algorithm>
 #include <cmath>
+#include <map>
 #include <set>
 
 #include <catch2/catch.hpp>
@@ -211,6 +213,97 @@ TEST_CASE("the Morton order is a permutation that keeps neighbours together, and
     CHECK(along / static_cast<double>(order.size()) < 3 * 0.05);  // the edges are 0.05 long; in the shuffled order steps are of length 1
     CHECK(morton_order(std::vector<double>(30, 7.5), 10) == Array<Index>{0, 1, 2, 3, 4, 5, 6, 7, 8, 9});
     CHECK(morton_order({}, 0).empty());
+}
+
+TEST_CASE("the Morton order is the plain sort by the bits of three coordinates", "[plan][ordering][large]") {
+    const Index count = 70000;
+    for (const double stretch : {1.0, 1e-3, 1e6}) {
+        CAPTURE(stretch);
+        const Eigen::MatrixXd random = rough_values(count, 3, 5);
+        std::vector<double> positions;
+        for (Index v = 0; v < count; ++v)
+            for (int c = 0; c < 3; ++c) positions.push_back(random(v, c) * (c == 0 ? stretch : 1) + 10);
+        positions[3 * 77] += 100 * stretch;  // one far away
+        double low[3], extent = 0;
+        for (int c = 0; c < 3; ++c) {
+            double high = low[c] = positions[c];
+            for (Index v = 0; v < count; ++v) low[c] = std::min(low[c], positions[3 * v + c]), high = std::max(high, positions[3 * v + c]);
+            extent = std::max(extent, high - low[c]);
+        }
+        std::vector<std::pair<std::uint32_t, Index>> keyed;
+        for (Index v = 0; v < count; ++v) {
+            std::uint32_t key = 0;
+            for (int c = 0; c < 3; ++c) {
+                const auto cell = static_cast<std::uint32_t>((positions[3 * v + c] - low[c]) * (1023 / extent));
+                for (int bit = 0; bit < 10; ++bit) key |= (cell >> bit & 1) << (3 * bit + c);
+            }
+            keyed.emplace_back(key, v);
+        }
+        std::stable_sort(keyed.begin(), keyed.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+        const Array<Index> order = morton_order(positions, count);
+        bool same = true;
+        for (Index i = 0; i < count; ++i) same = same && order[i] == keyed[i].second;
+        CHECK(same);
+    }
+}
+
+TEST_CASE("coordinates too far apart for their distance to be a number are ordered too", "[plan][ordering]") {
+    const Array<Index> order = morton_order({-1.7e308, 0, 0, 1.7e308, 0, 0}, 2);
+    CHECK(order == Array<Index>{0, 1});
+}
+
+TEST_CASE("a large plan equals a plain one: parts and shapes by stable sorts, rows one by one", "[plan][large]") {
+    auto creased = shapes::shuffled(shapes::grid_quads(220, 200), 7);
+    creased.features.corners = {5, 40000};
+    const shapes::Shape large[] = {shapes::shuffled(shapes::torus_quads(230, 200), 6), creased, shapes::shuffled(shapes::polygons_mixed(36000, 8), 9),
+                                   shapes::combined(shapes::torus_triangles(200, 180), shapes::disk_pole_triangles(500))};
+    for (const auto& shape : large)
+        for (const auto& scheme : {catmull_clark(), catmull_clark(0.2, 0.3), doo_sabin()}) {
+            INFO(shape.name << ", " << scheme_name(scheme.scheme));
+            const Prepared mesh(shape);
+            const Plan plan = mesh.plan(scheme);
+            check_permutation(plan);
+            check_cover(plan, 8192);
+            check_runs(plan);
+            const std::vector<std::uint8_t> all;
+            LimitRows rows(mesh.topology, mesh.features, scheme, all, all);
+            std::vector<RowClass> classes;
+            for (Index v = 0; v < plan.vertex_count; ++v) classes.push_back(rows.classify(v));
+            const Array<Index> morton = morton_order(shape.mesh.positions, plan.vertex_count);
+            std::vector<Index> order(morton.begin(), morton.end());
+            std::stable_sort(order.begin(), order.end(), [&](Index a, Index b) { return classes[a].kind < classes[b].kind; });
+            for (const Block& block : plan.blocks)
+                std::stable_sort(order.begin() + block.first_row, order.begin() + block.first_row + block.row_count, [&](Index a, Index b) {
+                    return std::pair(classes[a].shape, classes[a].edges) < std::pair(classes[b].shape, classes[b].edges);
+                });
+            CHECK(std::equal(order.begin(), order.end(), plan.vertex_of_row.begin()));
+            double worst = 0;
+            for (const Run& run : plan.runs)
+                for (Index row = run.first; row < run.first + run.count; ++row) {
+                    std::map<Index, double> difference;
+                    const LimitRow stored = plan_row(plan, run, row), plain = rows.row(order[row]);
+                    for (std::size_t i = 0; i < stored.columns.size(); ++i) difference[plan.vertex_of_row[stored.columns[i]]] += stored.weights[i];
+                    for (std::size_t i = 0; i < plain.columns.size(); ++i) difference[plain.columns[i]] -= plain.weights[i];
+                    for (const auto& [column, value] : difference) worst = std::max(worst, std::abs(value));
+                    for (std::size_t i = 0; i < plain.columns.size(); ++i)
+                        if (plain.columns[i] == order[row]) worst = std::max(worst, std::abs(plain.weights[i] - plan.diagonal[row]));
+                }
+            CHECK(worst < tolerance);
+        }
+}
+
+TEST_CASE("poles of any valence stand in runs of their own", "[plan]") {
+    auto shape = shapes::disk_pole_triangles(64);
+    for (const int n : {100, 63, 62, 100, 64, 65, 200}) shape = shapes::combined(shape, shapes::disk_pole_triangles(n));
+    const Prepared mesh(shape);
+    const Plan plan = mesh.plan(loop());
+    check_permutation(plan);
+    check_cover(plan, 8192);
+    check_runs(plan);
+    std::vector<int> valences;
+    for (const Run& run : plan.runs)
+        if (run.first >= plan.smooth.first_row) valences.insert(valences.end(), run.count, run.edges);
+    CHECK(valences == std::vector<int>{62, 63, 64, 64, 65, 100, 100, 200});
 }
 
 TEST_CASE("the host operator applies the plan's rows, whatever the channels and blocks", "[plan][apply]") {

@@ -2,12 +2,12 @@
 #include "host/operator/ordering.h"
 
 #include <algorithm>
-#include <array>
+#include <cmath>
 #include <cstdint>
 #include <cstdlib>
-#include <limits>
 
 #include "host/counting_sort.h"
+#include "host/mesh/box.h"
 
 namespace lcl {
 namespace {
@@ -25,42 +25,18 @@ struct Keyed {
     Index vertex;
 };
 
-struct Grid {
-    std::array<double, 3> low{0, 0, 0};
-    double scale = 0;  // one for all axes keeps cells cubic
-};
-
-Grid fit_grid(const std::vector<double>& positions, std::size_t count, int axis_bits) {
-    constexpr double infinity = std::numeric_limits<double>::infinity();
-    struct Box {
-        std::array<double, 3> low{infinity, infinity, infinity}, high{-infinity, -infinity, -infinity};
-        void add(const double* low_point, const double* high_point) {
-            for (int axis = 0; axis < 3; ++axis) low[axis] = std::min(low[axis], low_point[axis]), high[axis] = std::max(high[axis], high_point[axis]);
-        }
-    };
-    const std::size_t pieces = piece_count(count);
-    std::vector<Box> boxes(pieces);
-    for_each_piece(count, pieces, [&](std::size_t piece, std::size_t begin, std::size_t end) {
-        Box box;
-        for (std::size_t v = begin; v < end; ++v) box.add(&positions[3 * v], &positions[3 * v]);
-        boxes[piece] = box;
-    });
-    Box all;
-    for (const Box& box : boxes) all.add(box.low.data(), box.high.data());
-    const double extent = std::max({all.high[0] - all.low[0], all.high[1] - all.low[1], all.high[2] - all.low[2]});
-    return {all.low, extent > 0 ? ((1 << axis_bits) - 1) / extent : 0};
-}
-
 std::uint32_t hilbert(std::uint32_t morton, int bits);
 
 Array<Keyed> morton_keys(const std::vector<double>& positions, std::size_t count, int axis_bits) {
-    const Grid grid = fit_grid(positions, count, axis_bits);
+    const Box box = box_of_points(positions, count, [](std::size_t v) { return static_cast<Index>(v); });
+    const double extent = std::max({box.extent(0), box.extent(1), box.extent(2)});
+    const double scale = extent > 0 && std::isfinite(extent) ? ((1 << axis_bits) - 1) / extent : 0;  // one scale for all axes keeps cells cubic
     static const bool use_hilbert = std::getenv("HILBERT") != nullptr;
     Array<Keyed> keyed(count);
     parallel_for(count, [&](std::size_t begin, std::size_t end) {
         for (std::size_t v = begin; v < end; ++v) {
             std::uint32_t key = 0;
-            for (int axis = 0; axis < 3; ++axis) key |= spread(static_cast<std::uint32_t>((positions[3 * v + axis] - grid.low[axis]) * grid.scale)) << axis;
+            for (int axis = 0; axis < 3; ++axis) key |= spread(static_cast<std::uint32_t>((positions[3 * v + axis] - box.low[axis]) * scale)) << axis;
             if (use_hilbert) key = hilbert(key, axis_bits);
             keyed[v] = {key, static_cast<Index>(v)};
         }

@@ -11,6 +11,7 @@
 #include "host/counting_sort.h"
 #include "host/mesh/face_walk.h"
 #include "host/operator/ordering.h"
+#include "host/prefetch.h"
 
 namespace lcl {
 namespace {
@@ -220,6 +221,16 @@ private:
         });
     }
 
+    /// Starts to load what the rings of rows further on need: each array's place is known from the one before it.
+    void prefetch_ring(const Run& run, Index row) const {
+        const Index last = run.first + run.count - 1;
+        const auto vertex_ahead = [&](Index rows) { return plan_.vertex_of_row[std::min(row + rows, last)]; };
+        prefetch(&topology_.fan_offsets[vertex_ahead(24)]);
+        prefetch(topology_.fan_half_edges.data() + topology_.fan_offsets[vertex_ahead(16)]);
+        const Index first = topology_.fan_offsets[vertex_ahead(8)];
+        for (Index i = first; i < first + run.edges; ++i) prefetch(&topology_.face_vertices[topology_.fan_half_edges[i]]);
+    }
+
     template <class Walk>
     void fill_ring_run(const Walk& walk, const Run& run) {
         const int stride = run.stride();
@@ -227,6 +238,7 @@ private:
         const RowClass kind{kind_of_row(run.first), run.shape, run.edges};
         Index* out = plan_.indices.data() + run.index_offset;
         for (Index row = run.first; row < run.first + run.count; ++row, out += stride) {
+            prefetch_ring(run, row);
             rows_.ring_neighbours(walk, plan_.vertex_of_row[row], kind, out);
             for (int i = 0; i < stride; ++i) out[i] = plan_.row_of_vertex[out[i]];
         }
