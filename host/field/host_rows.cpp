@@ -62,9 +62,8 @@ void download_rows(const Plan& plan, const Transform& transform, const Field& fi
         with_type(rows, [&](auto* values) {
             using T = std::remove_pointer_t<decltype(values)>;
             const RowPlaces places(plan, values, rows.stride, block.first);
-            unpack_rows(field.format(), block, count, in, [&](std::size_t i, int c, double value) {
-                places.at(first + i)[c] = static_cast<T>(scaling.given(value, block.first + c));
-            });
+            unpack_rows(field.format(), block, count, in,
+                        [&](std::size_t i, int c, double value) { places.at(first + i)[c] = static_cast<T>(scaling.given(value, block.first + c)); });
         });
     });
 }

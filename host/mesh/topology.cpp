@@ -315,10 +315,11 @@ std::vector<Index> connected_components(const Topology& topology, Index& count) 
 }
 
 double bounding_box_diagonal(const PolygonMesh& mesh) {
-    return box_of_points(mesh.positions, mesh.face_vertices.size(), [&](std::size_t corner) {
-               const Index v = mesh.face_vertices[corner];
-               return v < mesh.vertex_count ? v : -1;
-           })
+    return box_of_points(mesh.positions, mesh.face_vertices.size(),
+                         [&](std::size_t corner) {
+                             const Index v = mesh.face_vertices[corner];
+                             return v < mesh.vertex_count ? v : -1;
+                         })
         .diagonal();
 }
 

@@ -305,7 +305,8 @@ private:
                 if (run.first >= plan_.smooth.first_row) bounds[b] = std::min(bounds[b], fill_scaling(run));
             }
         });
-        const bool is_smooth_run_of_two = std::any_of(plan_.runs.begin(), plan_.runs.end(), [&](const Run& run) { return run.first >= plan_.smooth.first_row && run.edges < 3; });
+        const bool is_smooth_run_of_two =
+            std::any_of(plan_.runs.begin(), plan_.runs.end(), [&](const Run& run) { return run.first >= plan_.smooth.first_row && run.edges < 3; });
         plan_.has_valence_2 = is_smooth_run_of_two;
         const double bound = bounds.empty() ? 1 : *std::min_element(bounds.begin(), bounds.end());
         plan_.lambda_min_bound = plan_.has_valence_2 && options_.scheme != Scheme::doo_sabin ? std::numeric_limits<double>::quiet_NaN() : std::max(0.0, bound);
@@ -332,8 +333,8 @@ private:
     const SchemeOptions& options_;
     const PlanOptions& plan_options_;
     LimitRows rows_;
-    Array<std::uint32_t> codes_;      // of each vertex
-    Array<std::uint8_t> groups_;      // of each vertex
+    Array<std::uint32_t> codes_;  // of each vertex
+    Array<std::uint8_t> groups_;  // of each vertex
     std::vector<std::vector<BlockSort::Group>> block_groups_;
     Plan plan_;
 };
