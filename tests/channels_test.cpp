@@ -34,20 +34,21 @@ double round_trip_error(const std::shared_ptr<Context>& context, Index rows, int
 
 }  // namespace
 
-TEST_CASE("the position has a block of its own, further channels follow in fours", "[channels]") {
-    for (int channels = 1; channels <= 12; ++channels) {
+TEST_CASE("the position has a block of its own, further channels follow in eights", "[channels]") {
+    for (int channels = 1; channels <= 21; ++channels) {
         INFO(channels);
         const auto blocks = channel_blocks(channels);
         int next = 0;
         for (std::size_t b = 0; b < blocks.size(); ++b) {
             CHECK(blocks[b].first == next);
-            CHECK(blocks[b].count == std::min(channels - next, b == 0 ? 3 : 4));
-            CHECK(blocks[b].width == (blocks[b].count == 3 ? 4 : blocks[b].count));
+            CHECK(blocks[b].count == std::min(channels - next, b == 0 ? 3 : 8));
+            CHECK((blocks[b].width == 1 || blocks[b].width == 2 || blocks[b].width == 4 || blocks[b].width == 8));
+            CHECK((blocks[b].width >= blocks[b].count && blocks[b].width < 2 * blocks[b].count));
             next += blocks[b].count;
         }
         CHECK(next == channels);
     }
-    CHECK(channel_blocks(9).size() == 3);  // 3, 4, 2
+    CHECK(channel_blocks(13).size() == 3);  // 3, 8, 2
 }
 
 TEST_CASE("positions share one scale, every further channel has its own, isolated vertices do not count", "[channels]") {

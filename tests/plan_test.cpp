@@ -8,6 +8,7 @@
 #include <catch2/catch.hpp>
 
 #include "host/apply/host_operator.h"
+#include "host/apply/excerpt.h"
 #include "host/operator/ordering.h"
 #include "tests/solver_support.h"
 
@@ -200,56 +201,57 @@ TEST_CASE("ghosts come last, without rows, and the owned rows are those of the w
     }
 }
 
-TEST_CASE("the Morton order is a permutation that keeps neighbours together, and equal positions in order", "[plan][ordering]") {
-    const auto mesh = shapes::shuffled(shapes::grid_quads(40, 40), 2).mesh;
-    const Array<Index> order = morton_order(mesh.positions, mesh.vertex_count);
-    CHECK(std::set<Index>(order.begin(), order.end()).size() == static_cast<std::size_t>(mesh.vertex_count));
-    double along = 0;
-    for (std::size_t i = 1; i < order.size(); ++i) {
-        double square = 0;
-        for (int c = 0; c < 3; ++c) square += std::pow(mesh.positions[3 * order[i] + c] - mesh.positions[3 * order[i - 1] + c], 2);
-        along += std::sqrt(square);
-    }
-    CHECK(along / static_cast<double>(order.size()) < 3 * 0.05);  // the edges are 0.05 long; in the shuffled order steps are of length 1
-    CHECK(morton_order(std::vector<double>(30, 7.5), 10) == Array<Index>{0, 1, 2, 3, 4, 5, 6, 7, 8, 9});
-    CHECK(morton_order({}, 0).empty());
+TEST_CASE("the breadth-first order is a permutation in which faces span two levels at most, isolated vertices last", "[plan][ordering]") {
+    const auto shape = shapes::with_isolated_vertex(shapes::shuffled(shapes::grid_quads(40, 30), 2), 5);
+    const Topology topology = build_topology(shape.mesh);
+    const Array<Index> order = breadth_first_order(topology, shape.mesh.positions);
+    REQUIRE(std::set<Index>(order.begin(), order.end()).size() == static_cast<std::size_t>(shape.mesh.vertex_count));
+    CHECK(order.back() == 5);
+    std::vector<Index> place(order.size());
+    for (std::size_t i = 0; i < order.size(); ++i) place[order[i]] = static_cast<Index>(i);
+    Index span = 0;
+    for (Index f = 0; f < topology.face_count; ++f)
+        for (Index c = topology.face_offsets[f]; c < topology.face_offsets[f + 1]; ++c)
+            span = std::max(span, std::abs(place[topology.face_vertices[c]] - place[topology.face_vertices[topology.face_offsets[f]]]));
+    CHECK(span <= 2 * (40 + 1 + 30 + 1));  // levels from a side of the grid hold at most one row and one column
+    CHECK(breadth_first_order(Topology{}, {}).empty());
 }
 
-TEST_CASE("the Morton order is the plain sort by the bits of three coordinates", "[plan][ordering][large]") {
-    const Index count = 70000;
-    for (const double stretch : {1.0, 1e-3, 1e6}) {
-        CAPTURE(stretch);
-        const Eigen::MatrixXd random = rough_values(count, 3, 5);
-        std::vector<double> positions;
-        for (Index v = 0; v < count; ++v)
-            for (int c = 0; c < 3; ++c) positions.push_back(random(v, c) * (c == 0 ? stretch : 1) + 10);
-        positions[3 * 77] += 100 * stretch;  // one far away
-        double low[3], extent = 0;
-        for (int c = 0; c < 3; ++c) {
-            double high = low[c] = positions[c];
-            for (Index v = 0; v < count; ++v) low[c] = std::min(low[c], positions[3 * v + c]), high = std::max(high, positions[3 * v + c]);
-            extent = std::max(extent, high - low[c]);
-        }
-        std::vector<std::pair<std::uint32_t, Index>> keyed;
-        for (Index v = 0; v < count; ++v) {
-            std::uint32_t key = 0;
-            for (int c = 0; c < 3; ++c) {
-                const auto cell = static_cast<std::uint32_t>((positions[3 * v + c] - low[c]) * (1023 / extent));
-                for (int bit = 0; bit < 10; ++bit) key |= (cell >> bit & 1) << (3 * bit + c);
-            }
-            keyed.emplace_back(key, v);
-        }
-        std::stable_sort(keyed.begin(), keyed.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
-        const Array<Index> order = morton_order(positions, count);
-        bool same = true;
-        for (Index i = 0; i < count; ++i) same = same && order[i] == keyed[i].second;
-        CHECK(same);
+TEST_CASE("a plan's reach bounds how many blocks the smooth rows of a block look away", "[plan][ordering]") {
+    for (const auto& shape : {shapes::torus_quads(40, 30), shapes::polygons_mixed(900, 5), shapes::grid_with_creases()}) {
+        const Prepared mesh(shape);
+        PlanOptions options;
+        options.block_rows = 16;
+        const Plan plan = mesh.plan(catmull_clark(), options);
+        const auto block_of = [&](Index row) { return (row - plan.smooth.first_row) / options.block_rows; };
+        Index reach = 0;
+        for (Index row = plan.smooth.first_row; row < plan.smooth.end_row(); ++row)
+            for (const Index column : plan_row(plan, run_of_row(plan, row), row).columns)
+                if (column >= plan.smooth.first_row && column < plan.smooth.end_row()) reach = std::max(reach, std::abs(block_of(row) - block_of(column)));
+        CHECK(plan.reach == reach);
     }
 }
 
-TEST_CASE("coordinates too far apart for their distance to be a number are ordered too", "[plan][ordering]") {
-    const Array<Index> order = morton_order({-1.7e308, 0, 0, 1.7e308, 0, 0}, 2);
-    CHECK(order == Array<Index>{0, 1});
+TEST_CASE("an excerpt is a principal submatrix, round the weakest rows", "[plan]") {
+    const Prepared mesh(shapes::polygons_mixed(900, 5));
+    PlanOptions options;
+    options.block_rows = 16;
+    const Plan plan = mesh.plan(catmull_clark(), options);
+    const Part part = weakest_blocks(plan, 100);
+    REQUIRE(part.row_count >= 100);
+    REQUIRE(part.row_count < plan.smooth.row_count);
+    const Plan some = excerpt(plan, part.first_block, part.block_count);
+    REQUIRE(some.row_count == part.row_count);
+    for (Index row = 0; row < some.row_count; ++row) {
+        std::map<Index, double> expected, found;
+        const LimitRow whole = plan_row(plan, run_of_row(plan, row + part.first_row), row + part.first_row), cut = plan_row(some, run_of_row(some, row), row);
+        for (std::size_t i = 0; i < whole.columns.size(); ++i)
+            if (whole.columns[i] >= part.first_row && whole.columns[i] < part.end_row()) expected[whole.columns[i] - part.first_row] += whole.weights[i];
+        for (std::size_t i = 0; i < cut.columns.size(); ++i)
+            if (cut.columns[i] < some.row_count) found[cut.columns[i]] += cut.weights[i];
+        CHECK(found == expected);
+    }
+    CHECK(weakest_blocks(plan, plan.smooth.row_count).row_count == plan.smooth.row_count);
 }
 
 TEST_CASE("a large plan equals a plain one: parts and shapes by stable sorts, rows one by one", "[plan][large]") {
@@ -263,14 +265,14 @@ TEST_CASE("a large plan equals a plain one: parts and shapes by stable sorts, ro
             const Prepared mesh(shape);
             const Plan plan = mesh.plan(scheme);
             check_permutation(plan);
-            check_cover(plan, 8192);
+            check_cover(plan, PlanOptions{}.block_rows);
             check_runs(plan);
             const std::vector<std::uint8_t> all;
             LimitRows rows(mesh.topology, mesh.features, scheme, all, all);
             std::vector<RowClass> classes;
             for (Index v = 0; v < plan.vertex_count; ++v) classes.push_back(rows.classify(v));
-            const Array<Index> morton = morton_order(shape.mesh.positions, plan.vertex_count);
-            std::vector<Index> order(morton.begin(), morton.end());
+            const Array<Index> breadth_first = breadth_first_order(mesh.topology, shape.mesh.positions);
+            std::vector<Index> order(breadth_first.begin(), breadth_first.end());
             std::stable_sort(order.begin(), order.end(), [&](Index a, Index b) { return classes[a].kind < classes[b].kind; });
             for (const Block& block : plan.blocks)
                 std::stable_sort(order.begin() + block.first_row, order.begin() + block.first_row + block.row_count, [&](Index a, Index b) {

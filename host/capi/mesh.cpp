@@ -183,18 +183,28 @@ bool widen(VertexProperty& property) {
     return !fits;
 }
 
-std::map<Index, Index> histogram(lcl_mesh_s& mesh, lcl_histogram which) {
+/// The values and how often each of them is met; `value` gives those of 0 to count - 1, below zero: not counted.
+template <class Value>
+std::map<Index, Index> count_values(Index count, const Value& value) {
+    std::vector<Index> times;
+    for (Index i = 0; i < count; ++i) {
+        const Index v = value(i);
+        if (v < 0) continue;
+        if (static_cast<std::size_t>(v) >= times.size()) times.resize(static_cast<std::size_t>(v) + 1);
+        ++times[static_cast<std::size_t>(v)];
+    }
     std::map<Index, Index> counts;
+    for (std::size_t v = 0; v < times.size(); ++v)
+        if (times[v] > 0) counts[static_cast<Index>(v)] = times[v];
+    return counts;
+}
+
+std::map<Index, Index> histogram(lcl_mesh_s& mesh, lcl_histogram which) {
     if (which != LCL_HISTOGRAM_FACE_DEGREES && which != LCL_HISTOGRAM_VALENCES)
         throw InvalidArgument("which is " + std::to_string(which) + ", it is 0 (face degrees) or 1 (valences)");
-    if (which == LCL_HISTOGRAM_FACE_DEGREES) {
-        for (Index f = 0; f < mesh.file.mesh.face_count(); ++f) ++counts[mesh.file.mesh.degree(f)];
-        return counts;
-    }
+    if (which == LCL_HISTOGRAM_FACE_DEGREES) return count_values(mesh.file.mesh.face_count(), [&](Index f) { return mesh.file.mesh.degree(f); });
     const Topology& topology = mesh.sound_topology();
-    for (Index v = 0; v < topology.vertex_count; ++v)
-        if (!topology.is_isolated(v)) ++counts[topology.valence(v)];
-    return counts;
+    return count_values(topology.vertex_count, [&](Index v) { return topology.is_isolated(v) ? -1 : topology.valence(v); });
 }
 
 lcl_mesh_info sound_info(lcl_mesh_s& mesh, lcl_mesh_info info) {

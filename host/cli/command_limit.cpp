@@ -8,12 +8,13 @@
 namespace lcl::cli {
 
 void run_limit(Job& job) {
+    DeviceOpening device(job);
     const Mesh mesh = read_sound_input(job);
     check_output_format(job, mesh.get());
     job.report.set_parameter("precision", std::string(precision_name(job.options.precision)));
     const SchemeChoice scheme = choose_scheme(job, mesh.get());
     const std::vector<std::string> channels = choose_channels(job, mesh.get());
-    const Context context = open_device(job);
+    const Context context = device.finish();
     const Operator A = make_operator(job, context.get(), mesh.get(), scheme.options);
     note_scheme_in_use(job, A.get());
     say_scheme(job);

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
+#include <system_error>
 
 #include <unistd.h>
 
@@ -18,8 +19,14 @@ namespace {
 
 void log_to_terminal(void* user, std::int32_t level, const char* message) {
     Job& job = *static_cast<Job*>(user);
-    if (level <= LCL_LOG_WARNING) warn(job, message);
+    if (job.held_log.is_held) job.held_log.messages.emplace_back(level, message);
+    else if (level <= LCL_LOG_WARNING) warn(job, message);
     else job.terminal.log(message);
+}
+
+void release_log(Job& job) {
+    job.held_log.is_held = false;
+    for (const auto& [level, message] : std::exchange(job.held_log.messages, {})) log_to_terminal(&job, level, message.c_str());
 }
 
 /// Standard input is read here: a pipe may let wait for ever, and Ctrl-C has to end that.
@@ -152,12 +159,14 @@ Mesh read_sound_input(Job& job) {
 }
 
 Histogram histogram_of(lcl_mesh mesh, lcl_histogram which) {
-    size_t size = 0;
-    check(lcl_mesh_get_histogram(mesh, which, nullptr, nullptr, 0, &size));
-    std::vector<std::int32_t> keys(size), counts(size);
-    check(lcl_mesh_get_histogram(mesh, which, keys.data(), counts.data(), size, &size));
+    size_t size = 64;  // more kinds than most meshes have
+    std::vector<std::int32_t> keys, counts;
+    do {
+        keys.resize(size), counts.resize(size);
+        check(lcl_mesh_get_histogram(mesh, which, keys.data(), counts.data(), keys.size(), &size));
+    } while (size > keys.size());
     Histogram histogram;
-    for (size_t index = 0; index < keys.size(); ++index) histogram.emplace_back(keys[index], counts[index]);
+    for (size_t index = 0; index < size; ++index) histogram.emplace_back(keys[index], counts[index]);
     return histogram;
 }
 
@@ -172,23 +181,39 @@ void check_output_format(const Job& job, lcl_mesh mesh) {
     }
 }
 
-Context open_device(Job& job) {
+DeviceOpening::DeviceOpening(Job& job, std::launch policy) : job_(job) {
+    const auto open = [&job] {
+        lcl_context_options options = LCL_CONTEXT_OPTIONS_INIT;
+        options.device = job.options.device.empty() ? nullptr : job.options.device.c_str();
+        options.log = log_to_terminal;
+        options.log_user = &job;
+        options.log_level = job.options.verbosity == 0 ? LCL_LOG_WARNING : job.options.verbosity == 1 ? LCL_LOG_INFO : LCL_LOG_DEBUG;
+        lcl_context handle = nullptr;
+        check(lcl_context_create(&options, &handle));
+        return Context(handle);
+    };
+    job.held_log.is_held = true;
+    try {
+        context_ = std::async(policy, open);
+    } catch (const std::system_error&) {  // no thread can be had
+        context_ = std::async(std::launch::deferred, open);
+    }
+}
+
+Context DeviceOpening::finish() {
     check_interrupt();
-    lcl_context_options options = LCL_CONTEXT_OPTIONS_INIT;
-    options.device = job.options.device.empty() ? nullptr : job.options.device.c_str();
-    options.log = log_to_terminal;
-    options.log_user = &job;
-    options.log_level = job.options.verbosity == 0 ? LCL_LOG_WARNING : job.options.verbosity == 1 ? LCL_LOG_INFO : LCL_LOG_DEBUG;
-    lcl_context handle = nullptr;
-    check(lcl_context_create(&options, &handle));
-    Context context(handle);
+    context_.wait();
+    release_log(job_);
+    Context context = context_.get();
     lcl_device_info device = LCL_DEVICE_INFO_INIT;
-    check(lcl_context_get_device(handle, &device));
-    job.report.device = device;
-    job.terminal.say("device", std::string(device.name) + " (" + device.platform + ", " + device.version + ")");
-    require_precision(job, device);
+    check(lcl_context_get_device(context.get(), &device));
+    job_.report.device = device;
+    job_.terminal.say("device", std::string(device.name) + " (" + device.platform + ", " + device.version + ")");
+    require_precision(job_, device);
     return context;
 }
+
+Context open_device(Job& job) { return DeviceOpening(job, std::launch::deferred).finish(); }
 
 Operator make_operator(Job& job, lcl_context context, lcl_mesh mesh, const lcl_scheme_options& scheme) {
     const Phase phase(job, &Seconds::topology, "building the limit operator", context);

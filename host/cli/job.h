@@ -3,7 +3,10 @@
 #pragma once
 
 #include <chrono>
+#include <cstdint>
+#include <future>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "host/cli/handles.h"
@@ -13,11 +16,18 @@
 
 namespace lcl::cli {
 
+/// Messages of the library that came while another thread had the terminal and the report.
+struct HeldLog {
+    bool is_held = false;
+    std::vector<std::pair<std::int32_t, std::string>> messages;  ///< level and text
+};
+
 /// One run of the program.
 struct Job {
     const Options& options;
     Terminal& terminal;
     Report& report;
+    HeldLog held_log = {};
 };
 
 /// Times a part of a command and shows it on the progress line; the seconds are added when it ends, also by an exception.
@@ -58,7 +68,18 @@ Histogram histogram_of(lcl_mesh mesh, lcl_histogram which);
 /// Refuses what OUT's format cannot hold before anything is computed.
 void check_output_format(const Job& job, lcl_mesh mesh);
 
-/// The device of the options. Exit code 5 where there is none, or where it has no doubles and they were asked for.
+/// The device of the options, which a thread opens while the mesh is read: loading the driver takes about as long.
+class DeviceOpening {
+public:
+    explicit DeviceOpening(Job& job, std::launch policy = std::launch::async);
+    /// Waits for it. Exit code 5 where there is none, or where it has no doubles and they were asked for. May be called once.
+    Context finish();
+
+private:
+    Job& job_;
+    std::future<Context> context_;
+};
+/// The same at once.
 Context open_device(Job& job);
 /// Operator of a mesh; its seconds go to topology and compile.
 Operator make_operator(Job& job, lcl_context context, lcl_mesh mesh, const lcl_scheme_options& scheme);

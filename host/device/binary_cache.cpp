@@ -3,24 +3,30 @@
 
 #include <unistd.h>
 
+#include <algorithm>
 #include <atomic>
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
+#include <cstring>
 #include <filesystem>
 #include <fstream>
-#include <sstream>
 #include <string_view>
 
 namespace lcl {
 
 namespace {
 
-constexpr std::string_view magic = "limitcl program binary 1\n";
+constexpr std::string_view magic = "limitcl program binary 2\n";
 
-/// FNV-1a, 64 bits; two starting values give two hashes that differ enough for file names.
+/// FNV-1a with words of 64 bits in place of bytes, of which binaries have millions; two starting values give two hashes that differ enough for file names.
 std::uint64_t hash(std::string_view text, std::uint64_t state) {
-    for (unsigned char c : text) state = (state ^ c) * 0x100000001b3u;
+    for (std::size_t at = 0; at < text.size(); at += sizeof state) {
+        std::uint64_t word = 0;
+        std::memcpy(&word, text.data() + at, std::min(sizeof word, text.size() - at));
+        state = (state ^ word) * 0x100000001b3u;
+        state ^= state >> 32;
+    }
     return state;
 }
 
@@ -48,6 +54,15 @@ std::string temporary_path(const std::string& path) {
     return path + "." + std::to_string(getpid()) + "." + std::to_string(serial++) + ".tmp";
 }
 
+bool read_file(const std::string& path, std::string& content) {
+    std::error_code failed;
+    const std::uintmax_t size = std::filesystem::file_size(path, failed);  // also fails for a folder
+    if (failed) return false;
+    content.resize(size);
+    std::ifstream file(path, std::ios::binary);
+    return file.read(content.data(), static_cast<std::streamsize>(size)).good();
+}
+
 bool write_file(const std::string& path, const std::string& head, const std::string& body) {
     std::ofstream file(path, std::ios::binary | std::ios::trunc);
     file.write(head.data(), static_cast<std::streamsize>(head.size()));
@@ -72,17 +87,16 @@ std::string BinaryCache::path(const std::string& key) const { return directory_ 
 
 std::optional<std::string> BinaryCache::load(const std::string& key) const {
     if (directory_.empty()) return std::nullopt;
-    std::ifstream file(path(key), std::ios::binary);
-    std::ostringstream bytes;
-    if (!(bytes << file.rdbuf())) return std::nullopt;  // no file, an empty one, or a folder
-    const std::string content = bytes.str();
+    std::string content;
+    if (!read_file(path(key), content)) return std::nullopt;
     // The header of the true binary is known but for the binary itself, which is whatever follows the key.
     const std::size_t head_end = content.find('\n', magic.size());
     if (head_end == std::string::npos || content.size() < head_end + 1 + key.size()) return std::nullopt;
     const std::size_t head_size = head_end + 1 + key.size();
-    std::string binary = content.substr(head_size);
+    const std::string_view binary = std::string_view(content).substr(head_size);
     if (binary.empty() || content.compare(0, head_size, header(key, binary)) != 0) return std::nullopt;
-    return binary;
+    content.erase(0, head_size);
+    return content;
 }
 
 void BinaryCache::store(const std::string& key, const std::string& binary) const {

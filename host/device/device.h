@@ -26,6 +26,7 @@ struct DeviceInfo {
     std::size_t memory_bytes = 0;  ///< global memory
     std::size_t max_allocation_bytes = 0;
     std::size_t max_work_group_size = 0;
+    std::size_t cache_bytes = 0;  ///< global memory cache; 0 where the driver does not say
     unsigned compute_units = 0;
     unsigned clock_mhz = 0;
 };

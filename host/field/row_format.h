@@ -9,7 +9,7 @@ namespace lcl {
 
 template <int count, class Get>
 void pack_count(RowFormat format, std::size_t rows, void* out, const Get& get) {
-    constexpr int width = count > 2 ? 4 : count;
+    constexpr int width = row_width(count);
     parallel_for(rows, [&](std::size_t begin, std::size_t end) {
         const auto for_each = [&](const auto& put) {
             for (std::size_t i = begin; i < end; ++i) {
@@ -40,13 +40,17 @@ void pack_rows(RowFormat format, const ChannelBlock& block, std::size_t rows, vo
         case 1: return pack_count<1>(format, rows, out, get);
         case 2: return pack_count<2>(format, rows, out, get);
         case 3: return pack_count<3>(format, rows, out, get);
-        default: return pack_count<4>(format, rows, out, get);
+        case 4: return pack_count<4>(format, rows, out, get);
+        case 5: return pack_count<5>(format, rows, out, get);
+        case 6: return pack_count<6>(format, rows, out, get);
+        case 7: return pack_count<7>(format, rows, out, get);
+        default: return pack_count<8>(format, rows, out, get);
     }
 }
 
 template <int count, class Put>
 void unpack_count(RowFormat format, std::size_t rows, const void* in, const Put& put) {
-    constexpr int width = count > 2 ? 4 : count;
+    constexpr int width = row_width(count);
     parallel_for(rows, [&](std::size_t begin, std::size_t end) {
         const auto for_each = [&](const auto& get) {
             for (std::size_t i = begin; i < end; ++i)
@@ -70,7 +74,11 @@ void unpack_rows(RowFormat format, const ChannelBlock& block, std::size_t rows, 
         case 1: return unpack_count<1>(format, rows, in, put);
         case 2: return unpack_count<2>(format, rows, in, put);
         case 3: return unpack_count<3>(format, rows, in, put);
-        default: return unpack_count<4>(format, rows, in, put);
+        case 4: return unpack_count<4>(format, rows, in, put);
+        case 5: return unpack_count<5>(format, rows, in, put);
+        case 6: return unpack_count<6>(format, rows, in, put);
+        case 7: return unpack_count<7>(format, rows, in, put);
+        default: return unpack_count<8>(format, rows, in, put);
     }
 }
 

@@ -3,9 +3,11 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "host/io/line_pieces.h"
 #include "host/io/mesh_file.h"
 
 namespace lcl {
@@ -15,6 +17,7 @@ struct InputBytes {
     const char* data;
     std::size_t size;
     const std::string& name;
+    Splitting splitting = {};
 };
 
 /// Where writers send their bytes, in order; a sink that cannot take them throws WriteError.
@@ -28,6 +31,9 @@ MeshFile read_off(const InputBytes& input);
 MeshFile read_ply(const InputBytes& input);
 MeshFile read_stl(const InputBytes& input);
 MeshFile read_om(const InputBytes& input);
+
+/// The same from a text that need not be in memory. Nothing where something is wrong: read_obj says what.
+std::optional<MeshFile> try_read_obj(const Text& text, const Splitting& splitting);
 
 void write_obj(const MeshFile& file, ByteSink& sink);
 void write_off(const MeshFile& file, ByteSink& sink);

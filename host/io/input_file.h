@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Whole files into memory.
+// Files that are read.
 #pragma once
 
 #include <cstddef>
@@ -14,7 +14,23 @@ struct OwnedBytes {
     std::size_t size = 0;
 };
 
-/// Reads a file, or standard input for "-". FileError if it cannot be opened or read, or is a directory.
-OwnedBytes read_whole_file(const std::string& path);
+/// An open file, or standard input for "-", which stays open. FileError if it cannot be opened or read, or is a directory.
+class InputFile {
+public:
+    explicit InputFile(const std::string& path);
+    ~InputFile();
+    InputFile(const InputFile&) = delete;
+    InputFile& operator=(const InputFile&) = delete;
+
+    int descriptor() const { return descriptor_; }
+    /// Bytes of a plain file, which can be read from any place; 0 for all else.
+    std::size_t size() const { return size_; }
+    OwnedBytes read_all() const;
+
+private:
+    std::string path_;
+    int descriptor_;
+    std::size_t size_ = 0;
+};
 
 }  // namespace lcl

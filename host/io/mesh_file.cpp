@@ -14,6 +14,8 @@
 #include <stdexcept>
 #include <string_view>
 
+#include <unistd.h>
+
 #include "host/io/atomic_file.h"
 #include "host/io/format.h"
 #include "host/io/gzip.h"
@@ -29,15 +31,16 @@ struct FormatRow {
     const char* ending;
     MeshFile (*read)(const InputBytes&);
     void (*write)(const MeshFile&, ByteSink&);
+    std::optional<MeshFile> (*try_read)(const Text&, const Splitting&);  ///< null where the whole file has to be in memory
     bool holds_colours, holds_properties, holds_corner_uvs, holds_vertex_uvs, holds_normals, holds_lines, holds_tags;
 };
 
 constexpr FormatRow format_rows[] = {
-    {FileFormat::obj, "OBJ", ".obj", read_obj, write_obj, true, false, true, true, true, true, true},
-    {FileFormat::off, "OFF", ".off", read_off, write_off, true, false, false, true, true, false, false},
-    {FileFormat::ply, "PLY", ".ply", read_ply, write_ply, true, true, true, true, true, false, false},
-    {FileFormat::stl, "STL", ".stl", read_stl, write_stl, false, false, false, false, false, false, false},
-    {FileFormat::om, "OM", ".om", read_om, write_om, true, false, false, false, false, false, false},
+    {FileFormat::obj, "OBJ", ".obj", read_obj, write_obj, try_read_obj, true, false, true, true, true, true, true},
+    {FileFormat::off, "OFF", ".off", read_off, write_off, nullptr, true, false, false, true, true, false, false},
+    {FileFormat::ply, "PLY", ".ply", read_ply, write_ply, nullptr, true, true, true, true, true, false, false},
+    {FileFormat::stl, "STL", ".stl", read_stl, write_stl, nullptr, false, false, false, false, false, false, false},
+    {FileFormat::om, "OM", ".om", read_om, write_om, nullptr, true, false, false, false, false, false, false},
 };
 
 const FormatRow& row_of(FileFormat format) {
@@ -136,14 +139,31 @@ MeshFile read_unpacked(const char* bytes, std::size_t size, const FormatRow& row
     return row.read({bytes, size, name});
 }
 
-MeshFile read_packed_or_not(const char* bytes, std::size_t size, const FormatRow& row, const std::string& name) try {
-    if (!is_gzip(bytes, size)) return read_unpacked(bytes, size, row, name);
-    const OwnedBytes unpacked = unpack_gzip(bytes, size, name);
-    return read_unpacked(unpacked.data.get(), unpacked.size, row, name);
+/// Memory that cannot be had, in words.
+template <class Read>
+auto within_memory(const Read& read, std::size_t size, const std::string& name) try {
+    return read();
 } catch (const std::bad_alloc&) {
     throw OutOfMemory("there is not enough memory to read " + name + " (" + std::to_string(size) + " bytes)");
 } catch (const std::length_error&) {
     throw OutOfMemory("there is not enough memory to read " + name + " (" + std::to_string(size) + " bytes)");
+}
+
+MeshFile read_packed_or_not(const char* bytes, std::size_t size, const FormatRow& row, const std::string& name) {
+    const auto read = [&] {
+        if (!is_gzip(bytes, size)) return read_unpacked(bytes, size, row, name);
+        const OwnedBytes unpacked = unpack_gzip(bytes, size, name);
+        return read_unpacked(unpacked.data.get(), unpacked.size, row, name);
+    };
+    return within_memory(read, size, name);
+}
+
+/// A plain text is read piece by piece: most of what reading a large file costs is new memory for it. Nothing where that is not for this file.
+std::optional<MeshFile> try_read_pieces(const InputFile& file, const FormatRow& row, const std::string& name) {
+    char head[2];
+    const bool is_file = row.try_read && file.size() > sizeof(head) && ::pread(file.descriptor(), head, sizeof(head), 0) == sizeof(head);
+    if (!is_file || is_gzip(head, sizeof(head))) return std::nullopt;
+    return within_memory([&] { return row.try_read({nullptr, file.size(), name, file.descriptor()}, {}); }, file.size(), name);
 }
 
 }  // namespace
@@ -159,8 +179,11 @@ FileFormat format_of_path(const std::string& path, bool& gzip) {
 MeshFile read_mesh(const std::string& path, FileFormat format) {
     bool ends_in_gz = false;
     const FormatRow& row = choose_format(path, format, ends_in_gz);
-    const OwnedBytes bytes = read_whole_file(path);
+    const InputFile file(path);
     const std::string name = path == "-" ? "standard input" : path;
+    if (!ends_in_gz)
+        if (std::optional<MeshFile> mesh = try_read_pieces(file, row, name)) return *std::move(mesh);
+    const OwnedBytes bytes = file.read_all();
     if (ends_in_gz && bytes.size > 0 && !is_gzip(bytes.data.get(), bytes.size))
         throw BadInput(name + " is no gzip file; drop .gz from its name if it is not packed");
     return read_packed_or_not(bytes.data.get(), bytes.size, row, name);

@@ -4,39 +4,45 @@
 // Kept: v (x y z, with r g b [a] behind them as many programs write), vt, f, the lines o g s usemtl mtllib in their place, and the tags crease, corner and
 // interpolateboundary. Dropped: vn, and w of a vertex. Everything else is counted. Colours are numbers from 0 to 1 in this format; integer columns of
 // other formats are divided by their full intensity when written.
+//
+// A text is read in parts of whole lines, at once. What is wrong in a part is not said before the whole has been looked at from its beginning, so that the
+// sentence, its line number included, is the one for the first line that is wrong.
 #include <algorithm>
-#include <cmath>
-#include <unordered_map>
+#include <optional>
 
 #include "host/io/format.h"
-#include "host/io/number_write.h"
+#include "host/io/obj_part.h"
 #include "host/io/text_scan.h"
+#include "host/parallel.h"
 
 namespace lcl {
 namespace {
 
-constexpr const char* colour_names[] = {"red", "green", "blue", "alpha"};
 constexpr double infinite_sharpness = 10;  // OpenSubdiv's Crease::SHARPNESS_INFINITE
 
+/// Reads lines into a part.
 class ObjReader {
 public:
-    explicit ObjReader(const InputBytes& input) : scan_(input, '#', true) {
-        // A line of text takes about 30 bytes a vertex and as much a face; a wrong guess costs a copy.
-        file_.mesh.positions.reserve(input.size / 20);
-        file_.mesh.face_vertices.reserve(input.size / 20);
-        file_.mesh.face_offsets.reserve(input.size / 80);
+    /// is_first: the part begins with the text, so that all that was counted before is known.
+    ObjReader(const std::string& name, std::size_t size, bool is_first) : scan_({nullptr, 0, name}, '#', true), is_first_(is_first) {
+        // Lines of nothing but short indices or long coordinates; room that is not used costs nothing.
+        file_.mesh.positions.reserve(size / 16);
+        file_.mesh.face_vertices.reserve(size / 6);
+        file_.mesh.face_offsets.reserve(size / 16);
     }
 
-    MeshFile read() {
+    void read(std::string_view lines, bool begins_text) {
+        scan_.move_to_piece(lines, begins_text);
         while (!scan_.at_end()) {
             scan_.skip_blanks();
             if (!scan_.at_line_end()) read_statement();
             scan_.skip_line();
         }
-        if (file_.mesh.positions.empty()) scan_.fail(scan_.end(), "no vertex line (v x y z) was found; is this an OBJ file?");
-        finish();
-        return std::move(file_);
     }
+
+    ObjPart take() { return std::move(part_); }
+
+    [[noreturn]] void fail_without_vertices() { scan_.fail(scan_.end(), "no vertex line (v x y z) was found; is this an OBJ file?"); }
 
 private:
     void read_statement() {
@@ -48,7 +54,7 @@ private:
         else if (keyword == "vn") return;
         else if (keyword == "t") read_tag();
         else if (keyword == "o" || keyword == "g" || keyword == "s" || keyword == "usemtl" || keyword == "mtllib") keep_line();
-        else count_unknown(printable(keyword));
+        else part_.count_unknown(printable(keyword), 1);
     }
 
     /// Reads the numbers of a line, as many as `values` takes, and gives how many there are.
@@ -67,57 +73,65 @@ private:
         if (count < 3) scan_.fail(statement_, "a vertex needs three coordinates, this line has " + std::to_string(count));
         check_count(file_.mesh.positions.size() / 3, "vertices");
         file_.mesh.positions.insert(file_.mesh.positions.end(), values, values + 3);
-        if (count == 4) dropped_weights_ += values[3] != 1;
-        if (count == 5 || count > 7) ++odd_vertices_;
+        if (count == 4) part_.dropped_weights += values[3] != 1;
+        if (count == 5 || count > 7) ++part_.odd_vertices;
         if (count == 6 || count == 7) add_colour(values + 3, count - 3);
     }
 
     void add_colour(const double* values, int count) {
         const std::size_t vertex = file_.mesh.positions.size() / 3 - 1;
         for (int i = 0; i < count; ++i) {
-            colours_[i].resize(vertex, 1.0);
-            colours_[i].push_back(values[i]);
+            part_.colours[i].resize(vertex, 1.0);
+            part_.colours[i].push_back(values[i]);
         }
-        ++coloured_vertices_;
+        ++part_.coloured_vertices;
     }
 
     void read_texture_coordinate() {
         double values[3] = {0, 0, 0};
         const int count = numbers(values, 3, "a texture coordinate");
         if (count < 1) scan_.fail(statement_, "a texture coordinate needs one to three numbers, this line has none");
-        check_count(texture_coordinate_count(), "texture coordinates");
-        if (count > 2 && file_.uvs.components == 2) widen_texture_coordinates();
+        check_count(texture_coordinate_count(file_.uvs), "texture coordinates");
+        if (count > 2) widen(file_.uvs);
         file_.uvs.values.insert(file_.uvs.values.end(), values, values + file_.uvs.components);
-    }
-
-    std::size_t texture_coordinate_count() const { return file_.uvs.values.size() / static_cast<std::size_t>(file_.uvs.components); }
-
-    void widen_texture_coordinates() {
-        std::vector<double> wide;
-        wide.reserve(file_.uvs.values.size() / 2 * 3);
-        for (std::size_t i = 0; i < file_.uvs.values.size(); i += 2) wide.insert(wide.end(), {file_.uvs.values[i], file_.uvs.values[i + 1], 0.0});
-        file_.uvs.values = std::move(wide);
-        file_.uvs.components = 3;
     }
 
     void read_face() {
         std::vector<Index>& corners = file_.mesh.face_vertices;
+        read_plain_corners();
         for (scan_.skip_blanks(); !scan_.at_line_end(); scan_.skip_blanks()) read_corner();
         check_count(corners.size(), "face corners");
         file_.mesh.face_offsets.push_back(static_cast<Index>(corners.size()));
     }
 
+    /// The corners of a line that are plain short numbers between blanks, as most are: up to the first that is something else.
+    void read_plain_corners() {
+        if (!file_.uvs.corner_indices.empty()) return;
+        const char* at = scan_.at();
+        for (;;) {
+            while (at != scan_.end() && *at == ' ') ++at;
+            const char* const first = at;
+            Index value = 0;
+            for (; at != scan_.end() && *at >= '0' && *at <= '9' && at - first < 9; ++at) value = 10 * value + (*at - '0');
+            if (value == 0 || at == scan_.end() || !(*at == ' ' || is_line_break(*at))) return;
+            file_.mesh.face_vertices.push_back(value - 1);
+            scan_.move_to(at);
+        }
+    }
+
     /// a, a/b, a//c or a/b/c; b and c may be missing behind their slash.
     void read_corner() {
-        file_.mesh.face_vertices.push_back(read_index(file_.mesh.positions.size() / 3, "vertex"));
-        Index texture_coordinate = -1;
-        if (take_slash() && !at_corner_part_end()) texture_coordinate = read_index(texture_coordinate_count(), "texture coordinate");
+        const std::size_t corner = file_.mesh.face_vertices.size();
+        file_.mesh.face_vertices.push_back(read_index(file_.mesh.positions.size() / 3, corner, part_.relative_corners, "vertex"));
+        std::optional<Index> texture_coordinate;
+        if (take_slash() && !at_corner_part_end())
+            texture_coordinate = read_index(texture_coordinate_count(file_.uvs), corner, part_.relative_texture_corners, "texture coordinate");
         Index normal;
         if (take_slash() && !at_corner_part_end() && !scan_.try_integer(normal)) fail_corner();
         if (!scan_.at_end() && !scan_.is_delimiter(*scan_.at())) fail_corner();
-        if (texture_coordinate < 0 && file_.uvs.corner_indices.empty()) return;
-        file_.uvs.corner_indices.resize(file_.mesh.face_vertices.size() - 1, -1);
-        file_.uvs.corner_indices.push_back(texture_coordinate);
+        if (!texture_coordinate && file_.uvs.corner_indices.empty()) return;
+        file_.uvs.corner_indices.resize(corner, -1);
+        file_.uvs.corner_indices.push_back(texture_coordinate.value_or(-1));
     }
 
     bool take_slash() {
@@ -128,8 +142,9 @@ private:
 
     bool at_corner_part_end() const { return scan_.at_end() || *scan_.at() == '/' || scan_.is_delimiter(*scan_.at()); }
 
-    /// An index from 1, or from the last one back, as an index from 0. One beyond the count is left to the checks of the mesh.
-    Index read_index(std::size_t count_so_far, const char* what) {
+    /// An index from 1, or from the last one back, as an index from 0. One beyond the count is left to the checks of the mesh. What is counted back in a part
+    /// that is not the first counts from the part's own first, until the parts are joined: `corner` goes to `relative`.
+    Index read_index(std::size_t count_so_far, std::size_t corner, std::vector<std::size_t>& relative, const char* what) {
         const char* first = scan_.at();
         std::int64_t value;
         if (!scan_.try_integer(value)) fail_corner();
@@ -138,9 +153,10 @@ private:
             scan_.fail(first, std::string(what) + " index " + std::to_string(value) + " is too large; the most is 2147483647");
         if (value > 0) return static_cast<Index>(value - 1);
         const std::int64_t counted_back = static_cast<std::int64_t>(count_so_far) + value;
-        if (counted_back < 0)
+        if (counted_back < (is_first_ ? 0 : std::numeric_limits<Index>::min()))
             scan_.fail(first,
                        std::string(what) + " index " + std::to_string(value) + " counts back further than the " + std::to_string(count_so_far) + " before it");
+        if (!is_first_) relative.push_back(corner);
         return static_cast<Index>(counted_back);
     }
 
@@ -163,12 +179,6 @@ private:
         file_.lines.push_back({file_.mesh.face_count(), std::move(text)});
     }
 
-    void count_unknown(const std::string& keyword) {
-        const auto [place, is_new] = unknown_.emplace(keyword, file_.unknown_statements.size());
-        if (is_new) file_.unknown_statements.emplace_back(keyword, 0);
-        ++file_.unknown_statements[place->second].second;
-    }
-
     /// t name integers/floats/strings ..., vertices from 0.
     void read_tag() {
         scan_.skip_blanks();
@@ -176,8 +186,8 @@ private:
         if (name == "crease") read_crease();
         else if (name == "corner") read_corner_tag();
         else if (name == "interpolateboundary") read_boundary_rule();
-        else if (name.empty()) count_unknown("t");
-        else if (std::find(file_.tags.ignored.begin(), file_.tags.ignored.end(), name) == file_.tags.ignored.end()) file_.tags.ignored.push_back(name);
+        else if (name.empty()) part_.count_unknown("t", 1);
+        else part_.ignore_tag(name);
     }
 
     struct TagArguments {
@@ -245,154 +255,55 @@ private:
             scan_.fail(statement_, std::string("the file has more than 2147483647 ") + what + ", the most that can be numbered");
     }
 
-    void finish() {
-        file_.mesh.vertex_count = static_cast<Index>(file_.mesh.positions.size() / 3);
-        finish_colours();
-        finish_texture_coordinates();
-        if (dropped_weights_ > 0) file_.warnings.push_back("the weights w of " + std::to_string(dropped_weights_) + " vertices are not 1; they were dropped");
-        if (odd_vertices_ > 0)
-            file_.warnings.push_back(std::to_string(odd_vertices_) +
-                                     " vertex lines have 5 or more than 7 numbers; those behind x, y, z and a colour were dropped");
-        std::string names;
-        for (const std::string& name : file_.tags.ignored) names += (names.empty() ? "" : ", ") + name;
-        if (!names.empty()) file_.warnings.push_back("tags that have no effect here were skipped: " + names);
-    }
-
-    void finish_colours() {
-        const std::size_t vertex_count = static_cast<std::size_t>(file_.mesh.vertex_count);
-        if (coloured_vertices_ == 0) return;
-        if (coloured_vertices_ < vertex_count)
-            file_.warnings.push_back(std::to_string(vertex_count - coloured_vertices_) +
-                                     " vertices have no colour while others have one; they were made white");
-        for (int i = 0; i < 4; ++i) {
-            if (colours_[i].empty()) continue;
-            colours_[i].resize(vertex_count, 1.0);
-            file_.properties.push_back({colour_names[i], VertexProperty::Kind::colour, "double", std::move(colours_[i])});
-        }
-    }
-
-    /// Corners may name texture coordinates that come later in the file, so that the range is known only now.
-    void finish_texture_coordinates() {
-        std::vector<Index>& indices = file_.uvs.corner_indices;
-        if (!indices.empty()) indices.resize(file_.mesh.face_vertices.size(), -1);
-        const std::size_t count = texture_coordinate_count();
-        std::size_t beyond = 0;
-        for (Index& index : indices) {
-            if (index < 0 || static_cast<std::size_t>(index) < count) continue;
-            index = -1;
-            ++beyond;
-        }
-        if (beyond > 0)
-            file_.warnings.push_back(std::to_string(beyond) + " face corners name a texture coordinate beyond the " + std::to_string(count) +
-                                     " of the file; they were left without one");
-    }
-
     TextScanner scan_;
-    MeshFile file_;
+    const bool is_first_;
+    ObjPart part_;
+    MeshFile& file_ = part_.file;
     const char* statement_ = nullptr;  // where the present statement begins
-    std::vector<double> colours_[4];
-    std::size_t coloured_vertices_ = 0, dropped_weights_ = 0, odd_vertices_ = 0;
-    std::unordered_map<std::string, std::size_t> unknown_;
 };
 
-class ObjWriter {
-public:
-    ObjWriter(const MeshFile& file, ByteSink& sink) : file_(file), out_(sink) {}
+ObjPart read_part(const Text& text, std::size_t begin, std::size_t end, std::size_t piece) {
+    ObjReader reader(text.name, begin == 0 ? text.size : end - begin, begin == 0);  // the others are appended to the first
+    LinePieces pieces(text, begin, end, piece);
+    bool begins_text = begin == 0;
+    for (std::string_view lines = pieces.next(); !lines.empty(); lines = pieces.next(), begins_text = false) reader.read(lines, begins_text);
+    return reader.take();
+}
 
-    void write() {
-        write_vertices();
-        write_rows("vt", file_.uvs.values, has_texture_coordinates(file_) ? file_.uvs.components : 0);
-        write_rows("vn", file_.normals, 3);
-        write_faces();
-        write_tags();
-        out_.flush();
-    }
-
-private:
-    void write_vertices() {
-        const ColourColumns colours = find_colours(file_);
-        const VertexProperty* columns[] = {colours.red, colours.green, colours.blue, colours.alpha};
-        for (Index v = 0; v < file_.mesh.vertex_count; ++v) {
-            out_.character('v');
-            write_numbers(&file_.mesh.positions[3 * static_cast<std::size_t>(v)], 3);
-            for (const VertexProperty* column : columns) {
-                if (!column) continue;
-                out_.character(' ');
-                out_.number(column->values[static_cast<std::size_t>(v)] / full_intensity(*column));
-            }
-            out_.character('\n');
-        }
-    }
-
-    void write_numbers(const double* values, int count) {
-        for (int i = 0; i < count; ++i) {
-            out_.character(' ');
-            out_.number(values[i]);
-        }
-    }
-
-    void write_rows(const char* keyword, const std::vector<double>& values, int width) {
-        for (std::size_t i = 0; width > 0 && i < values.size(); i += static_cast<std::size_t>(width)) {
-            out_.text(keyword);
-            write_numbers(&values[i], width);
-            out_.character('\n');
-        }
-    }
-
-    void write_faces() {
-        const PolygonMesh& mesh = file_.mesh;
-        auto line = file_.lines.begin();
-        for (Index f = 0; f < mesh.face_count(); ++f) {
-            for (; line != file_.lines.end() && line->before_face <= f; ++line) write_line(line->text);
-            out_.character('f');
-            for (Index c = mesh.face_offsets[f]; c < mesh.face_offsets[f + 1]; ++c) write_corner(c);
-            out_.character('\n');
-        }
-        for (; line != file_.lines.end(); ++line) write_line(line->text);
-    }
-
-    void write_line(const std::string& text) {
-        out_.text(text);
-        out_.character('\n');
-    }
-
-    void write_corner(Index corner) {
-        const Index vertex = file_.mesh.face_vertices[corner] + 1;
-        const Index texture_coordinate = has_texture_coordinates_ ? file_.uvs.corner_indices[corner] + 1 : 0;
-        out_.character(' ');
-        out_.number(vertex);
-        if (texture_coordinate > 0 || !file_.normals.empty()) out_.character('/');
-        if (texture_coordinate > 0) out_.number(texture_coordinate);
-        if (file_.normals.empty()) return;
-        out_.character('/');
-        out_.number(vertex);
-    }
-
-    void write_tags() {
-        const MeshTags& tags = file_.tags;
-        if (tags.interpolate_boundary >= 0) write_tag("t interpolateboundary 1/0/0", {tags.interpolate_boundary}, "");
-        for (const std::array<Index, 2>& edge : tags.creases) write_tag("t crease 2/1/0", {edge[0], edge[1]}, " 10");
-        for (const Index corner : tags.corners) write_tag("t corner 1/1/0", {corner}, " 10");
-    }
-
-    void write_tag(const char* head, std::initializer_list<Index> integers, const char* tail) {
-        out_.text(head);
-        for (const Index integer : integers) {
-            out_.character(' ');
-            out_.number(integer);
-        }
-        write_line(tail);
-    }
-
-    const MeshFile& file_;
-    OutputBuffer out_;
-    const bool has_texture_coordinates_ = has_texture_coordinates(file_);
-};
+ObjPart read_parts(const Text& text, const Splitting& splitting) {
+    const std::size_t count = splitting.parts_of(text.size);
+    std::vector<ObjPart> parts(count);
+    const auto begin_of = [&](std::size_t part) { return next_line(text, text.size / count * part + text.size % count * part / count); };
+    parallel_for(
+        count,
+        [&](std::size_t first, std::size_t last) {
+            for (std::size_t i = first; i < last; ++i) parts[i] = read_part(text, begin_of(i), i + 1 < count ? begin_of(i + 1) : text.size, splitting.piece);
+        },
+        1);
+    return join(std::move(parts));
+}
 
 }  // namespace
 
-MeshFile read_obj(const InputBytes& input) { return ObjReader(input).read(); }
+std::optional<MeshFile> try_read_obj(const Text& text, const Splitting& splitting) {
+    try {
+        ObjPart whole = read_parts(text, splitting);
+        const bool names_no_line = whole.file.tags.refused.empty();
+        if (!whole.file.mesh.positions.empty() && names_no_line) return finish(std::move(whole));
+    } catch (const BadInput&) {  // which line is the first to be wrong is found out by reading from the beginning
+    }
+    return std::nullopt;
+}
 
-void write_obj(const MeshFile& file, ByteSink& sink) { ObjWriter(file, sink).write(); }
+MeshFile read_obj(const InputBytes& input) {
+    const Text text{input.data, input.size, input.name};
+    if (input.splitting.parts_of(input.size) > 1)
+        if (std::optional<MeshFile> file = try_read_obj(text, input.splitting)) return *std::move(file);
+    ObjReader reader(input.name, input.size, true);
+    reader.read({input.data, input.size}, true);
+    ObjPart whole = reader.take();
+    if (whole.file.mesh.positions.empty()) reader.fail_without_vertices();
+    return finish(std::move(whole));
+}
 
 }  // namespace lcl

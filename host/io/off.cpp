@@ -184,68 +184,73 @@ private:
 
 class OffWriter {
 public:
-    OffWriter(const MeshFile& file, ByteSink& sink) : file_(file), out_(sink), colours_(find_colours(file)) {}
+    OffWriter(const MeshFile& file, ByteSink& sink) : file_(file), sink_(sink), colours_(find_colours(file)) {}
 
     void write() {
-        if (has_texture_coordinates_) out_.text("ST");
-        if (colours_) out_.text("C");
-        if (!file_.normals.empty()) out_.text("N");
-        out_.text("OFF\n");
-        out_.number(file_.mesh.vertex_count);
-        out_.character(' ');
-        out_.number(file_.mesh.face_count());
-        out_.text(" 0\n");
-        for (Index v = 0; v < file_.mesh.vertex_count; ++v) write_vertex(static_cast<std::size_t>(v));
-        for (Index f = 0; f < file_.mesh.face_count(); ++f) write_face(f);
-        out_.flush();
+        write_header();
+        write_rows(sink_, static_cast<std::size_t>(file_.mesh.vertex_count), [&](OutputBuffer& out, std::size_t v) { write_vertex(out, v); });
+        write_rows(sink_, static_cast<std::size_t>(file_.mesh.face_count()), [&](OutputBuffer& out, std::size_t f) { write_face(out, static_cast<Index>(f)); });
     }
 
 private:
-    void write_vertex(std::size_t vertex) {
-        write_numbers(&file_.mesh.positions[3 * vertex], 3);
-        if (!file_.normals.empty()) write_numbers(&file_.normals[3 * vertex], 3, ' ');
-        if (colours_) write_colour(vertex);
-        if (has_texture_coordinates_) write_numbers(&file_.uvs.values[2 * vertex], 2, ' ');
-        out_.character('\n');
+    void write_header() {
+        OutputBuffer out;
+        if (has_texture_coordinates_) out.text("ST");
+        if (colours_) out.text("C");
+        if (!file_.normals.empty()) out.text("N");
+        out.text("OFF\n");
+        out.number(file_.mesh.vertex_count);
+        out.character(' ');
+        out.number(file_.mesh.face_count());
+        out.text(" 0\n");
+        out.pass_on(sink_);
     }
 
-    void write_numbers(const double* values, int count, char before = 0) {
+    void write_vertex(OutputBuffer& out, std::size_t vertex) const {
+        write_numbers(out, &file_.mesh.positions[3 * vertex], 3);
+        if (!file_.normals.empty()) write_numbers(out, &file_.normals[3 * vertex], 3, ' ');
+        if (colours_) write_colour(out, vertex);
+        if (has_texture_coordinates_) write_numbers(out, &file_.uvs.values[2 * vertex], 2, ' ');
+        out.character('\n');
+    }
+
+    static void write_numbers(OutputBuffer& out, const double* values, int count, char before = 0) {
         for (int i = 0; i < count; ++i) {
-            if (i > 0 || before != 0) out_.character(' ');
-            out_.number(values[i]);
+            if (i > 0 || before != 0) out.character(' ');
+            out.number(values[i]);
         }
     }
 
     /// Bytes as they are, other columns from 0 to 1 with a point. Where texture coordinates follow, alpha cannot be left out.
-    void write_colour(std::size_t vertex) {
+    void write_colour(OutputBuffer& out, std::size_t vertex) const {
         for (const VertexProperty* column : {colours_.red, colours_.green, colours_.blue, colours_.alpha}) {
             if (!column && !has_texture_coordinates_) continue;
             const double unit = full_intensity(column ? *column : *colours_.red);
             const double value = column ? column->values[vertex] : unit;
-            out_.character(' ');
-            if (unit == 255) write_byte(value);
-            else write_fraction(value / unit);
+            out.character(' ');
+            if (unit == 255) write_byte(out, value);
+            else write_fraction(out, value / unit);
         }
     }
 
-    void write_byte(double value) { out_.number(static_cast<int>(round_to_range(value, 0, 255))); }
+    static void write_byte(OutputBuffer& out, double value) { out.number(static_cast<int>(round_to_range(value, 0, 255))); }
 
-    void write_fraction(double value) {
-        out_.number(value);
-        if (value == std::floor(value) && std::fabs(value) < 1e5) out_.text(".0");  // without its point a reader might take a 1 for a byte
+    static void write_fraction(OutputBuffer& out, double value) {
+        out.number(value);
+        if (value == std::floor(value) && std::fabs(value) < 1e5) out.text(".0");  // without its point a reader might take a 1 for a byte
     }
 
-    void write_face(Index f) {
-        out_.number(file_.mesh.degree(f));
+    void write_face(OutputBuffer& out, Index f) const {
+        out.number(file_.mesh.degree(f));
         for (Index c = file_.mesh.face_offsets[f]; c < file_.mesh.face_offsets[f + 1]; ++c) {
-            out_.character(' ');
-            out_.number(file_.mesh.face_vertices[c]);
+            out.character(' ');
+            out.number(file_.mesh.face_vertices[c]);
         }
-        out_.character('\n');
+        out.character('\n');
     }
 
     const MeshFile& file_;
-    OutputBuffer out_;
+    ByteSink& sink_;
     ColourColumns colours_;
     const bool has_texture_coordinates_ = has_vertex_texture_coordinates(file_) && file_.uvs.components == 2;
 };

@@ -11,36 +11,11 @@
 
 #include "host/io/format.h"
 #include "host/io/number_write.h"
+#include "host/io/ply_types.h"
 #include "host/io/text_scan.h"
 
 namespace lcl {
 namespace {
-
-enum class Scalar { int8, uint8, int16, uint16, int32, uint32, float32, float64 };
-
-struct ScalarName {
-    const char* name;
-    Scalar scalar;
-};
-
-constexpr ScalarName scalar_names[] = {{"char", Scalar::int8},     {"int8", Scalar::int8},       {"uchar", Scalar::uint8},    {"uint8", Scalar::uint8},
-                                       {"short", Scalar::int16},   {"int16", Scalar::int16},     {"ushort", Scalar::uint16},  {"uint16", Scalar::uint16},
-                                       {"int", Scalar::int32},     {"int32", Scalar::int32},     {"uint", Scalar::uint32},    {"uint32", Scalar::uint32},
-                                       {"float", Scalar::float32}, {"float32", Scalar::float32}, {"double", Scalar::float64}, {"float64", Scalar::float64}};
-
-/// Null if there is no such type.
-const ScalarName* find_scalar(std::string_view name) {
-    for (const ScalarName& row : scalar_names)
-        if (name == row.name) return &row;
-    return nullptr;
-}
-
-std::size_t size_of(Scalar scalar) {
-    constexpr std::size_t sizes[] = {1, 1, 2, 2, 4, 4, 4, 8};
-    return sizes[static_cast<int>(scalar)];
-}
-
-bool is_floating(Scalar scalar) { return scalar == Scalar::float32 || scalar == Scalar::float64; }
 
 struct Property {
     std::string name;
@@ -440,129 +415,8 @@ private:
     std::size_t faces_without_uvs_ = 0;
 };
 
-class PlyWriter {
-public:
-    PlyWriter(const MeshFile& file, ByteSink& sink)
-        : file_(file),
-          out_(sink),
-          is_ascii_(file.ply_encoding == "ascii"),
-          swap_(file.ply_encoding == "binary_big_endian"),
-          position_scalar_(file.ply_position_type == "float" ? Scalar::float32 : Scalar::float64),
-          uv_scalar_(Scalar::float32) {
-        for (const VertexProperty& property : file.properties) {
-            const ScalarName* row = find_scalar(property.type);
-            property_scalars_.push_back(row ? row->scalar : Scalar::float64);
-        }
-        for (const double value : file.uvs.values)
-            if (static_cast<double>(static_cast<float>(value)) != value) uv_scalar_ = Scalar::float64;  // most programs know only float
-        for (Index f = 0; f < file.mesh.face_count(); ++f) largest_degree_ = std::max(largest_degree_, file.mesh.degree(f));
-    }
-
-    void write() {
-        write_header();
-        for (Index v = 0; v < file_.mesh.vertex_count; ++v) write_vertex(static_cast<std::size_t>(v));
-        for (Index f = 0; f < file_.mesh.face_count(); ++f) write_face(f);
-        out_.flush();
-    }
-
-private:
-    void write_header() {
-        const std::string encoding = file_.ply_encoding.empty() ? "binary_little_endian" : file_.ply_encoding;
-        out_.text("ply\nformat " + encoding + " 1.0\nelement vertex " + std::to_string(file_.mesh.vertex_count) + "\n");
-        for (const char* name : {"x", "y", "z"}) write_property(position_scalar_, name);
-        if (!file_.normals.empty())
-            for (const char* name : {"nx", "ny", "nz"}) write_property(position_scalar_, name);
-        for (std::size_t p = 0; p < property_scalars_.size(); ++p) write_property(property_scalars_[p], file_.properties[p].name);
-        out_.text("element face " + std::to_string(file_.mesh.face_count()) + "\nproperty list ");
-        out_.text(std::string(largest_degree_ > 255 ? "int" : "uchar") + " int vertex_indices\n");
-        if (has_uvs_) out_.text(std::string("property list ") + (largest_degree_ > 127 ? "int " : "uchar ") + name_of(uv_scalar_) + " texcoord\n");
-        out_.text("end_header\n");
-    }
-
-    static const char* name_of(Scalar scalar) {
-        for (const ScalarName& row : scalar_names)
-            if (row.scalar == scalar) return row.name;
-        return "double";
-    }
-
-    void write_property(Scalar scalar, const std::string& name) { out_.text(std::string("property ") + name_of(scalar) + " " + name + "\n"); }
-
-    void write_vertex(std::size_t vertex) {
-        for (int i = 0; i < 3; ++i) write_scalar(file_.mesh.positions[3 * vertex + static_cast<std::size_t>(i)], position_scalar_);
-        if (!file_.normals.empty())
-            for (int i = 0; i < 3; ++i) write_scalar(file_.normals[3 * vertex + static_cast<std::size_t>(i)], position_scalar_);
-        for (std::size_t p = 0; p < property_scalars_.size(); ++p) write_scalar(file_.properties[p].values[vertex], property_scalars_[p]);
-        end_row();
-    }
-
-    void write_face(Index face) {
-        const PolygonMesh& mesh = file_.mesh;
-        write_scalar(mesh.degree(face), largest_degree_ > 255 ? Scalar::int32 : Scalar::uint8);
-        for (Index c = mesh.face_offsets[face]; c < mesh.face_offsets[face + 1]; ++c) write_scalar(mesh.face_vertices[c], Scalar::int32);
-        if (has_uvs_) write_texture_coordinates(face);
-        end_row();
-    }
-
-    /// A face of which a corner has none gets an empty list.
-    void write_texture_coordinates(Index face) {
-        const auto first = file_.uvs.corner_indices.begin() + file_.mesh.face_offsets[face];
-        const auto last = file_.uvs.corner_indices.begin() + file_.mesh.face_offsets[face + 1];
-        const bool is_complete = std::all_of(first, last, [](Index index) { return index >= 0; });
-        write_scalar(is_complete ? 2.0 * static_cast<double>(last - first) : 0.0, largest_degree_ > 127 ? Scalar::int32 : Scalar::uint8);
-        for (auto index = first; is_complete && index != last; ++index)
-            for (int i = 0; i < 2; ++i)
-                write_scalar(file_.uvs.values[static_cast<std::size_t>(*index) * static_cast<std::size_t>(file_.uvs.components) + static_cast<std::size_t>(i)],
-                             uv_scalar_);
-    }
-
-    void end_row() {
-        if (is_ascii_) out_.character('\n');
-        row_has_values_ = false;
-    }
-
-    void write_scalar(double value, Scalar scalar) {
-        switch (scalar) {
-            case Scalar::int8: return write_whole<std::int8_t>(value);
-            case Scalar::uint8: return write_whole<std::uint8_t>(value);
-            case Scalar::int16: return write_whole<std::int16_t>(value);
-            case Scalar::uint16: return write_whole<std::uint16_t>(value);
-            case Scalar::int32: return write_whole<std::int32_t>(value);
-            case Scalar::uint32: return write_whole<std::uint32_t>(value);
-            case Scalar::float32: return is_ascii_ ? write_value(value) : write_value(static_cast<float>(value));
-            case Scalar::float64: return write_value(value);
-        }
-    }
-
-    template <class T>
-    void write_whole(double value) {
-        write_value(
-            static_cast<T>(round_to_range(value, static_cast<double>(std::numeric_limits<T>::min()), static_cast<double>(std::numeric_limits<T>::max()))));
-    }
-
-    template <class T>
-    void write_value(T value) {
-        if (!is_ascii_) return out_.raw(value, swap_);
-        if (row_has_values_) out_.character(' ');
-        row_has_values_ = true;
-        if constexpr (sizeof(T) == 1) out_.number(static_cast<int>(value));
-        else out_.number(value);
-    }
-
-    const MeshFile& file_;
-    OutputBuffer out_;
-    const bool is_ascii_, swap_;
-    const Scalar position_scalar_;
-    Scalar uv_scalar_;
-    std::vector<Scalar> property_scalars_;
-    const bool has_uvs_ = has_texture_coordinates(file_);
-    Index largest_degree_ = 0;
-    bool row_has_values_ = false;
-};
-
 }  // namespace
 
 MeshFile read_ply(const InputBytes& input) { return PlyReader(input).read(); }
-
-void write_ply(const MeshFile& file, ByteSink& sink) { PlyWriter(file, sink).write(); }
 
 }  // namespace lcl

@@ -201,6 +201,17 @@ void check_triangles(const PolygonMesh& mesh) {
                 {{}, {f}});
 }
 
+void write_triangle(OutputBuffer& out, const PolygonMesh& mesh, const Index* vertices) {
+    const double* corners[3];
+    for (int c = 0; c < 3; ++c) corners[c] = &mesh.positions[3 * static_cast<std::size_t>(vertices[c])];
+    float normal[3];
+    triangle_normal(corners[0], corners[1], corners[2], normal);
+    for (const float value : normal) out.raw(value);
+    for (const double* corner : corners)
+        for (int i = 0; i < 3; ++i) out.raw(static_cast<float>(corner[i]));
+    out.raw(static_cast<std::uint16_t>(0));
+}
+
 }  // namespace
 
 MeshFile read_stl(const InputBytes& input) { return StlReader(input).read(); }
@@ -208,22 +219,14 @@ MeshFile read_stl(const InputBytes& input) { return StlReader(input).read(); }
 void write_stl(const MeshFile& file, ByteSink& sink) {
     const PolygonMesh& mesh = file.mesh;
     check_triangles(mesh);
-    OutputBuffer out(sink);
-    std::string head = "limitcl binary STL";
-    head.resize(80, ' ');  // not 'solid': that is how ASCII begins
-    out.text(head);
-    out.raw(static_cast<std::uint32_t>(mesh.face_count()));
-    for (Index f = 0; f < mesh.face_count(); ++f) {
-        const double* corners[3];
-        for (Index c = 0; c < 3; ++c) corners[c] = &mesh.positions[3 * static_cast<std::size_t>(mesh.face_vertices[mesh.face_offsets[f] + c])];
-        float normal[3];
-        triangle_normal(corners[0], corners[1], corners[2], normal);
-        for (const float value : normal) out.raw(value);
-        for (const double* corner : corners)
-            for (int i = 0; i < 3; ++i) out.raw(static_cast<float>(corner[i]));
-        out.raw(static_cast<std::uint16_t>(0));
-    }
-    out.flush();
+    OutputBuffer head;
+    std::string title = "limitcl binary STL";
+    title.resize(80, ' ');  // not 'solid': that is how ASCII begins
+    head.text(title);
+    head.raw(static_cast<std::uint32_t>(mesh.face_count()));
+    head.pass_on(sink);
+    write_rows(sink, static_cast<std::size_t>(mesh.face_count()),
+               [&](OutputBuffer& out, std::size_t f) { write_triangle(out, mesh, &mesh.face_vertices[static_cast<std::size_t>(mesh.face_offsets[f])]); });
 }
 
 }  // namespace lcl

@@ -32,7 +32,14 @@ public:
     /// `comment`: starts a comment that runs to the end of the line (0: there are none). `joins_lines`: a backslash before a line's end continues the line.
     TextScanner(const InputBytes& input, char comment, bool joins_lines = false)
         : at_(input.data), begin_(input.data), end_(input.data + input.size), name_(input.name), comment_(comment), joins_lines_(joins_lines) {
-        if (input.size >= 3 && std::string_view(at_, 3) == "\xEF\xBB\xBF") at_ += 3;
+        skip_byte_order_mark();
+    }
+
+    /// On to another piece of the text. Line numbers count from where it begins; a byte order mark is looked for at the beginning of a text only.
+    void move_to_piece(std::string_view piece, bool begins_text) {
+        at_ = begin_ = piece.data();
+        end_ = at_ + piece.size();
+        if (begins_text) skip_byte_order_mark();
     }
 
     const char* at() const { return at_; }
@@ -136,6 +143,10 @@ public:
     bool is_delimiter(char c) const { return is_blank(c) || is_line_break(c) || (c == comment_ && c != 0) || (c == '\\' && joins_lines_); }
 
 private:
+    void skip_byte_order_mark() {
+        if (remaining() >= 3 && std::string_view(at_, 3) == "\xEF\xBB\xBF") at_ += 3;
+    }
+
     void skip_line_break() {
         if (at_ == end_) return;
         const bool is_pair = *at_ == '\r' && end_ - at_ > 1 && at_[1] == '\n';

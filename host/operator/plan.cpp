@@ -87,6 +87,7 @@ public:
         with_face_walk(topology_, [&](const auto& walk) { fill_rings(walk); });
         fill_weighted();
         fill_run_values();
+        measure_reach();
         return std::move(plan_);
     }
 
@@ -110,9 +111,9 @@ private:
         });
     }
 
-    /// Morton order inside each part: a stable counting sort by group.
+    /// Breadth-first order inside each part: a stable counting sort by group.
     void order_rows() {
-        Array<Index> order = morton_order(mesh_.positions, plan_.vertex_count);
+        Array<Index> order = breadth_first_order(topology_, mesh_.positions);
         const std::size_t n = order.size(), pieces = piece_count(n);
         Array<Index> places(pieces * group_count);
         std::array<Index, group_count + 1> starts;
@@ -326,6 +327,41 @@ private:
             bound = std::min(bound, lambda_min_bound(options_, n, lambda));
         }
         return bound;
+    }
+
+    /// How far each block's rows reach, in blocks: rows of a part's blocks are equally many but for the last.
+    void measure_reach() {
+        const Part& smooth = plan_.smooth;
+        std::vector<Index> reaches(smooth.block_count, 0);
+        parallel_for(
+            smooth.block_count,
+            [&](std::size_t begin, std::size_t end) {
+                for (std::size_t b = begin; b < end; ++b) reaches[b] = reach_of(plan_.blocks[smooth.first_block + b]);
+            },
+            4);
+        for (const Index reach : reaches) plan_.reach = std::max(plan_.reach, reach);
+    }
+
+    Index reach_of(const Block& block) const {
+        Index lowest = block.first_row, highest = block.first_row;
+        const auto take = [&](const Index* columns, std::size_t count) {
+            for (std::size_t i = 0; i < count; ++i) {
+                if (columns[i] < plan_.smooth.first_row || columns[i] >= plan_.smooth.end_row()) continue;
+                lowest = std::min(lowest, columns[i]);
+                highest = std::max(highest, columns[i]);
+            }
+        };
+        for (Index r = block.first_run; r < block.first_run + block.run_count; ++r) {
+            const Run& run = plan_.runs[r];
+            if (run.shape != RowShape::weighted) {
+                take(plan_.indices.data() + run.index_offset, static_cast<std::size_t>(run.count) * run.stride());
+                continue;
+            }
+            const std::uint32_t begin = plan_.weighted_offsets[run.index_offset];
+            take(plan_.weighted_indices.data() + begin, plan_.weighted_offsets[run.index_offset + run.count] - begin);
+        }
+        const auto block_of = [&](Index row) { return (row - plan_.smooth.first_row) / plan_options_.block_rows; };
+        return std::max(block_of(highest) - block_of(block.first_row), block_of(block.first_row) - block_of(lowest));
     }
 
     const PolygonMesh& mesh_;

@@ -33,6 +33,12 @@ void find_weakest(const Topology& topology, const Features& features, LimitSyste
 
 }  // namespace
 
+Field& LimitSystem::work_field(Purpose purpose, int channels, Real real) {
+    const auto key = std::make_tuple(purpose, channels, real);
+    const auto found = work_fields.find(key);
+    return found != work_fields.end() ? found->second : work_fields.emplace(key, A->make_field(channels, real)).first->second;
+}
+
 std::unique_ptr<LimitSystem> make_limit_system(std::shared_ptr<Context> context, const PolygonMesh& mesh, const Topology& topology, const Features& features,
                                                const SchemeOptions& scheme, PlanOptions plan_options) {
     const Objection objection = scheme_objection(topology, scheme);
@@ -45,7 +51,7 @@ std::unique_ptr<LimitSystem> make_limit_system(std::shared_ptr<Context> context,
     system->singular = find_singular_component(topology, features, scheme, plan_options.subset);
     find_weakest(topology, features, *system);
     auto plan = std::make_shared<const Plan>(build_plan(mesh, topology, features, scheme, plan_options));
-    system->A = std::make_unique<DeviceOperator>(std::move(context), std::move(plan), shape.group);
+    system->A = std::make_unique<DeviceOperator>(std::move(context), std::move(plan), shape);
     return system;
 }
 

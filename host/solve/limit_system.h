@@ -2,8 +2,10 @@
 // A limit operator ready to be solved with: plan, device arrays, and what is found out about it and remembered.
 #pragma once
 
+#include <map>
 #include <memory>
 #include <optional>
+#include <tuple>
 
 #include "host/apply/device_operator.h"
 #include "host/operator/suitability.h"
@@ -40,6 +42,11 @@ struct LimitSystem {
     std::optional<Spectrum> spectrum;         // filled by spectrum_of
     std::optional<InverseNorm> inverse_norm;  // filled by inverse_norm_of
     std::optional<Schedule> natural, coloured;
+
+    /// Fields that solves work in, made once and kept: one a purpose and shape. Contents are undefined at first.
+    enum class Purpose { right, correction, scratch };
+    Field& work_field(Purpose purpose, int channels, Real real);
+    std::map<std::tuple<Purpose, int, Real>, Field> work_fields;
 
     const Plan& plan() const { return A->plan(); }
 };
