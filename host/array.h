@@ -19,7 +19,8 @@ namespace lcl {
 inline void advise_huge_pages([[maybe_unused]] void* memory, [[maybe_unused]] std::size_t bytes) {
 #ifdef __linux__
     constexpr std::uintptr_t page = std::uintptr_t{1} << 21;
-    const auto begin = (reinterpret_cast<std::uintptr_t>(memory) + page - 1) / page * page, end = (reinterpret_cast<std::uintptr_t>(memory) + bytes) / page * page;
+    const auto begin = (reinterpret_cast<std::uintptr_t>(memory) + page - 1) / page * page,
+               end = (reinterpret_cast<std::uintptr_t>(memory) + bytes) / page * page;
     if (begin < end) madvise(reinterpret_cast<void*>(begin), end - begin, MADV_HUGEPAGE);  // advice only: it may be refused
 #endif
 }

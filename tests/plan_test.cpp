@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The plan: the operator's rows in their fast order, as plain arrays.
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <set>
@@ -251,6 +252,60 @@ TEST_CASE("an excerpt is a principal submatrix, round the weakest rows", "[plan]
         CHECK(found == expected);
     }
     CHECK(weakest_blocks(plan, plan.smooth.row_count).row_count == plan.smooth.row_count);
+}
+
+TEST_CASE("a large plan equals a plain one: parts and shapes by stable sorts, rows one by one", "[plan][large]") {
+    auto creased = shapes::shuffled(shapes::grid_quads(220, 200), 7);
+    creased.features.corners = {5, 40000};
+    const shapes::Shape large[] = {shapes::shuffled(shapes::torus_quads(230, 200), 6), creased, shapes::shuffled(shapes::polygons_mixed(36000, 8), 9),
+                                   shapes::combined(shapes::torus_triangles(200, 180), shapes::disk_pole_triangles(500))};
+    for (const auto& shape : large)
+        for (const auto& scheme : {catmull_clark(), catmull_clark(0.2, 0.3), doo_sabin()}) {
+            INFO(shape.name << ", " << scheme_name(scheme.scheme));
+            const Prepared mesh(shape);
+            const Plan plan = mesh.plan(scheme);
+            check_permutation(plan);
+            check_cover(plan, PlanOptions{}.block_rows);
+            check_runs(plan);
+            const std::vector<std::uint8_t> all;
+            LimitRows rows(mesh.topology, mesh.features, scheme, all, all);
+            std::vector<RowClass> classes;
+            for (Index v = 0; v < plan.vertex_count; ++v) classes.push_back(rows.classify(v));
+            const Array<Index> breadth_first = breadth_first_order(mesh.topology, shape.mesh.positions);
+            std::vector<Index> order(breadth_first.begin(), breadth_first.end());
+            std::stable_sort(order.begin(), order.end(), [&](Index a, Index b) { return classes[a].kind < classes[b].kind; });
+            for (const Block& block : plan.blocks)
+                std::stable_sort(order.begin() + block.first_row, order.begin() + block.first_row + block.row_count, [&](Index a, Index b) {
+                    return std::pair(classes[a].shape, classes[a].edges) < std::pair(classes[b].shape, classes[b].edges);
+                });
+            CHECK(std::equal(order.begin(), order.end(), plan.vertex_of_row.begin()));
+            double worst = 0;
+            for (const Run& run : plan.runs)
+                for (Index row = run.first; row < run.first + run.count; ++row) {
+                    std::map<Index, double> difference;
+                    const LimitRow stored = plan_row(plan, run, row), plain = rows.row(order[row]);
+                    for (std::size_t i = 0; i < stored.columns.size(); ++i) difference[plan.vertex_of_row[stored.columns[i]]] += stored.weights[i];
+                    for (std::size_t i = 0; i < plain.columns.size(); ++i) difference[plain.columns[i]] -= plain.weights[i];
+                    for (const auto& [column, value] : difference) worst = std::max(worst, std::abs(value));
+                    for (std::size_t i = 0; i < plain.columns.size(); ++i)
+                        if (plain.columns[i] == order[row]) worst = std::max(worst, std::abs(plain.weights[i] - plan.diagonal[row]));
+                }
+            CHECK(worst < tolerance);
+        }
+}
+
+TEST_CASE("poles of any valence stand in runs of their own", "[plan]") {
+    auto shape = shapes::disk_pole_triangles(64);
+    for (const int n : {100, 63, 62, 100, 64, 65, 200}) shape = shapes::combined(shape, shapes::disk_pole_triangles(n));
+    const Prepared mesh(shape);
+    const Plan plan = mesh.plan(loop());
+    check_permutation(plan);
+    check_cover(plan, 8192);
+    check_runs(plan);
+    std::vector<int> valences;
+    for (const Run& run : plan.runs)
+        if (run.first >= plan.smooth.first_row) valences.insert(valences.end(), run.count, run.edges);
+    CHECK(valences == std::vector<int>{62, 63, 64, 64, 65, 100, 100, 200});
 }
 
 TEST_CASE("the host operator applies the plan's rows, whatever the channels and blocks", "[plan][apply]") {

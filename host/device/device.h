@@ -142,8 +142,8 @@ public:
     /// Copies that return at once, on the transfer queue; `from` and `to` must live until the event is done. They start after `after`.
     Event write_async(const Buffer& buffer, std::size_t offset, std::size_t bytes, const void* from, const Event& after, const std::string& doing);
     Event read_async(const Buffer& buffer, std::size_t offset, std::size_t bytes, void* to, const Event& after, const std::string& doing);
-    /// Maps bytes for the host after `after` and waits. On a CPU that is the device's own memory, without a copy. for_writing: what was there is lost, and all of it
-    /// is to be written; else it is only read.
+    /// Maps bytes for the host after `after` and waits. On a CPU that is the device's own memory, without a copy. for_writing: what was there is lost, and all
+    /// of it is to be written; else it is only read.
     Mapping map(const Buffer& buffer, std::size_t offset, std::size_t bytes, bool for_writing, const Event& after, const std::string& doing);
     /// Device to device on the kernels' queue.
     void copy(const Buffer& from, std::size_t from_offset, const Buffer& to, std::size_t to_offset, std::size_t bytes, const std::string& doing);

@@ -60,11 +60,10 @@ void refuse_not_finite(const Plan& plan, const double* values, std::size_t strid
 }  // namespace
 
 std::vector<ChannelBlock> channel_blocks(int channels) {
-    const auto width_of = [](int count) { return count > 4 ? 8 : count > 2 ? 4 : count; };
     std::vector<ChannelBlock> blocks;
     for (int first = 0; first < channels;) {
         const int count = std::min(channels - first, first == 0 ? 3 : 8);
-        blocks.push_back({first, count, width_of(count)});
+        blocks.push_back({first, count, row_width(count)});
         first += count;
     }
     return blocks;

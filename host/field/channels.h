@@ -16,6 +16,9 @@ struct ChannelBlock {
 
 constexpr double float_range = 1e37;  // isolated vertices are cut off here
 
+/// Components of a row of so many channels: vectors of the kernels.
+constexpr int row_width(int count) { return count > 4 ? 8 : count > 2 ? 4 : count; }
+
 /// The first block holds the position, x, y, z (or fewer), alone: its norm is the residual E_k. Further channels follow in
 /// eights, which cost a CPU little more than fours: indices are read once for both.
 std::vector<ChannelBlock> channel_blocks(int channels);

@@ -427,7 +427,8 @@ bool positions_are_finite(const PolygonMesh& mesh) {
 
 std::vector<Defect> find_defects_of_sound_mesh(const PolygonMesh& mesh) {
     std::vector<Defect> defects;
-    find_area_defects(mesh, [](Index) { return true; }, defects);
+    find_area_defects(
+        mesh, [](Index) { return true; }, defects);
     return defects;
 }
 
@@ -436,7 +437,8 @@ std::vector<Defect> find_defects(const PolygonMesh& mesh) {
     const std::vector<char> bad = find_corner_defects(mesh, defects);
     find_connectivity_defects(mesh, bad, defects.empty(), defects);
     find_position_defects(mesh, defects);
-    find_area_defects(mesh, [&](Index f) { return bad[f] == 0; }, defects);
+    find_area_defects(
+        mesh, [&](Index f) { return bad[f] == 0; }, defects);
     return defects;
 }
 

@@ -167,8 +167,7 @@ void classify_vertices(const Topology& topology, const std::vector<char>& marked
 /// Vertices of a surface without boundary, creases and corners.
 void classify_as_smooth(const Topology& topology, Features& features) {
     parallel_for(topology.vertex_count, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t v = begin; v < end; ++v)
-            features.kind[v] = topology.is_isolated(static_cast<Index>(v)) ? VertexKind::isolated : VertexKind::smooth;
+        for (std::size_t v = begin; v < end; ++v) features.kind[v] = topology.is_isolated(static_cast<Index>(v)) ? VertexKind::isolated : VertexKind::smooth;
     });
 }
 

@@ -3,15 +3,15 @@
 
 #include <algorithm>
 #include <atomic>
-#include <cmath>
 #include <limits>
 #include <numeric>
 #include <utility>
 
 #include "host/counting_sort.h"
+#include "host/mesh/box.h"
 #include "host/mesh/face_walk.h"
 #include "host/mesh/soundness.h"
-#include "host/parallel.h"
+#include "host/prefetch.h"
 
 namespace lcl {
 namespace {
@@ -180,6 +180,18 @@ private:
     std::vector<char> is_followed_;
 };
 
+constexpr Index fans_ahead = 40;  // corners
+
+/// Starts to load what ordering the fans of `count` corners needs.
+void prefetch_fan(const Topology& topology, Index first, Index count) {
+    const Index end = std::min(first + count, topology.half_edge_count());
+    for (Index i = first; i < end; ++i) {
+        const Index h = topology.fan_half_edges[i];
+        prefetch(&topology.face_vertices[h]);
+        prefetch_for_writing(&topology.twin[h]);
+    }
+}
+
 /// Orders the fan of each vertex and finds all twins on the way. False where the mesh is no consistently oriented manifold.
 template <class Walk>
 bool order_fans(const Walk& walk, Topology& topology) {
@@ -193,6 +205,7 @@ bool order_fans(const Walk& walk, Topology& topology) {
         for (std::size_t v = begin; v < end; ++v) {
             Index* const fan = topology.fan_half_edges.data() + topology.fan_offsets[v];
             const Index size = topology.fan_offsets[v + 1] - topology.fan_offsets[v];
+            prefetch_fan(topology, topology.fan_offsets[v] + fans_ahead, size);
             if (size > 0 && !order_small_closed_fan(size, walk, topology.face_vertices.data(), fan, topology.twin.data())) {
                 const Kind kind = any.order(static_cast<Index>(v));
                 if (kind == Kind::broken) return void(is_broken = true);
@@ -301,51 +314,18 @@ std::vector<Index> connected_components(const Topology& topology, Index& count) 
     return component;
 }
 
-namespace {
-
-struct Box {
-    double low[3], high[3];
-    Box() {
-        std::fill_n(low, 3, std::numeric_limits<double>::infinity());
-        std::fill_n(high, 3, -std::numeric_limits<double>::infinity());
-    }
-    void add(const double* low_point, const double* high_point) {
-        for (int c = 0; c < 3; ++c) {
-            low[c] = std::min(low[c], low_point[c]);
-            high[c] = std::max(high[c], high_point[c]);
-        }
-    }
-    double diagonal() const { return low[0] > high[0] ? 0 : std::hypot(high[0] - low[0], high[1] - low[1], high[2] - low[2]); }
-};
-
-/// Box of the points of [0, count) that vertex_at names, those out of range left out.
-template <class VertexAt>
-double diagonal_of(const PolygonMesh& mesh, std::size_t count, const VertexAt& vertex_at) {
-    const std::size_t pieces = piece_count(count);
-    std::vector<Box> boxes(pieces);
-    for_each_piece(count, pieces, [&](std::size_t piece, std::size_t begin, std::size_t end) {
-        Box box;
-        for (std::size_t i = begin; i < end; ++i) {
-            const Index v = vertex_at(i);
-            if (v < 0 || v >= mesh.vertex_count) continue;
-            const double* point = &mesh.positions[3 * static_cast<std::size_t>(v)];
-            box.add(point, point);
-        }
-        boxes[piece] = box;
-    });
-    Box all;
-    for (const Box& box : boxes) all.add(box.low, box.high);
-    return all.diagonal();
-}
-
-}  // namespace
-
 double bounding_box_diagonal(const PolygonMesh& mesh) {
-    return diagonal_of(mesh, mesh.face_vertices.size(), [&](std::size_t corner) { return mesh.face_vertices[corner]; });
+    return box_of_points(mesh.positions, mesh.face_vertices.size(),
+                         [&](std::size_t corner) {
+                             const Index v = mesh.face_vertices[corner];
+                             return v < mesh.vertex_count ? v : -1;
+                         })
+        .diagonal();
 }
 
 double bounding_box_diagonal(const PolygonMesh& mesh, const Topology& topology) {
-    return diagonal_of(mesh, topology.vertex_count, [&](std::size_t v) { return topology.is_isolated(static_cast<Index>(v)) ? -1 : static_cast<Index>(v); });
+    return box_of_points(mesh.positions, topology.vertex_count, [&](std::size_t v) { return topology.vertex_half_edge[v] < 0 ? -1 : static_cast<Index>(v); })
+        .diagonal();
 }
 
 }  // namespace lcl

@@ -11,6 +11,7 @@
 #include "host/counting_sort.h"
 #include "host/mesh/face_walk.h"
 #include "host/operator/ordering.h"
+#include "host/prefetch.h"
 
 namespace lcl {
 namespace {
@@ -221,6 +222,16 @@ private:
         });
     }
 
+    /// Starts to load what the rings of rows further on need: each array's place is known from the one before it.
+    void prefetch_ring(const Run& run, Index row) const {
+        const Index last = run.first + run.count - 1;
+        const auto vertex_ahead = [&](Index rows) { return plan_.vertex_of_row[std::min(row + rows, last)]; };
+        prefetch(&topology_.fan_offsets[vertex_ahead(24)]);
+        prefetch(topology_.fan_half_edges.data() + topology_.fan_offsets[vertex_ahead(16)]);
+        const Index first = topology_.fan_offsets[vertex_ahead(8)];
+        for (Index i = first; i < first + run.edges; ++i) prefetch(&topology_.face_vertices[topology_.fan_half_edges[i]]);
+    }
+
     template <class Walk>
     void fill_ring_run(const Walk& walk, const Run& run) {
         const int stride = run.stride();
@@ -228,6 +239,7 @@ private:
         const RowClass kind{kind_of_row(run.first), run.shape, run.edges};
         Index* out = plan_.indices.data() + run.index_offset;
         for (Index row = run.first; row < run.first + run.count; ++row, out += stride) {
+            prefetch_ring(run, row);
             rows_.ring_neighbours(walk, plan_.vertex_of_row[row], kind, out);
             for (int i = 0; i < stride; ++i) out[i] = plan_.row_of_vertex[out[i]];
         }
@@ -294,7 +306,8 @@ private:
                 if (run.first >= plan_.smooth.first_row) bounds[b] = std::min(bounds[b], fill_scaling(run));
             }
         });
-        const bool is_smooth_run_of_two = std::any_of(plan_.runs.begin(), plan_.runs.end(), [&](const Run& run) { return run.first >= plan_.smooth.first_row && run.edges < 3; });
+        const bool is_smooth_run_of_two =
+            std::any_of(plan_.runs.begin(), plan_.runs.end(), [&](const Run& run) { return run.first >= plan_.smooth.first_row && run.edges < 3; });
         plan_.has_valence_2 = is_smooth_run_of_two;
         const double bound = bounds.empty() ? 1 : *std::min_element(bounds.begin(), bounds.end());
         plan_.lambda_min_bound = plan_.has_valence_2 && options_.scheme != Scheme::doo_sabin ? std::numeric_limits<double>::quiet_NaN() : std::max(0.0, bound);
@@ -356,8 +369,8 @@ private:
     const SchemeOptions& options_;
     const PlanOptions& plan_options_;
     LimitRows rows_;
-    Array<std::uint32_t> codes_;      // of each vertex
-    Array<std::uint8_t> groups_;      // of each vertex
+    Array<std::uint32_t> codes_;  // of each vertex
+    Array<std::uint8_t> groups_;  // of each vertex
     std::vector<std::vector<BlockSort::Group>> block_groups_;
     Plan plan_;
 };
