@@ -159,6 +159,138 @@ TEST_CASE("a large OBJ file is refused with the number of the line", "[io][obj][
     CHECK(contains(error_of<lcl::BadInput>([&] { lcl::read_mesh(folder.file("b.obj")); }), "b.obj:" + std::to_string(150 * 150 + 149 * 149 + 1) + ": 'x'"));
 }
 
+namespace {
+
+/// Skipped elements before, between and behind, lists among the scalars, texture coordinates of which one list is too short, empty and blank lines.
+const std::string awkward_ply_header =
+    "element start 3\nproperty int a\nelement vertex 5\nproperty double x\nproperty uchar red\nproperty list uchar int more\nproperty float y\nproperty double "
+    "z\n"
+    "element nothing 2\nelement face 4\nproperty list uchar float texcoord\nproperty list ushort int vertex_indices\nproperty short flag\n"
+    "element end 2\nproperty list int double values\nend_header\n";
+const std::string awkward_ply_body =
+    "1\n2\n\n3\n0 1 0 0 0\n 1 2 2 7 8 0.5 0\n \t \n0 3 0 1 0.1\r\n1 4 1 9 1 0\n2 5 0 2 2\n6 0 0 0.5 0 1 1 3 0 1 2 5\n0 4 1 2 3 4 6\n\r\n"
+    "1 0.25 3 4 3 2 7\n8 0 0 1 0 1 1 0 1 4 0 1 3 2 8\n2 1 2\n0";
+
+template <class T>
+void put(std::string& bytes, double value, bool swap) {
+    T typed = static_cast<T>(value);
+    if (swap) typed = lcl::swap_bytes(typed);
+    bytes.append(reinterpret_cast<const char*>(&typed), sizeof typed);
+}
+
+/// Triangles, quads and pentagons with a column of bytes, in one of the binary encodings.
+std::string binary_ply(bool swap) {
+    std::string bytes = std::string("ply\nformat binary_") + (swap ? "big" : "little") +
+                        "_endian 1.0\nelement vertex 40\nproperty float x\nproperty uchar red\nproperty double y\nproperty short z\n"
+                        "element face 60\nproperty list uchar int vertex_indices\nproperty list uint float texcoord\nend_header\n";
+    for (int v = 0; v < 40; ++v)
+        put<float>(bytes, v / 3.0, swap), put<unsigned char>(bytes, v, swap), put<double>(bytes, v / 7.0, swap), put<short>(bytes, -v, swap);
+    for (int f = 0; f < 60; ++f) {
+        const int degree = 3 + f % 3;
+        put<unsigned char>(bytes, degree, swap);
+        for (int i = 0; i < degree; ++i) put<int>(bytes, (f + i) % 40, swap);
+        const int uvs = f % 4 == 0 ? 2 * degree : f % 4;
+        put<unsigned>(bytes, uvs, swap);
+        for (int i = 0; i < uvs; ++i) put<float>(bytes, f + i / 8.0, swap);
+    }
+    return bytes;
+}
+
+/// Triangles that share corners, one with -0.
+std::string binary_stl() {
+    std::string bytes(80, ' ');
+    put<unsigned>(bytes, 100, false);
+    for (int f = 0; f < 100; ++f) {
+        for (int i = 0; i < 3; ++i) put<float>(bytes, 0, false);
+        for (int i = 0; i < 3; ++i) put<float>(bytes, (f + i) % 20, false), put<float>(bytes, f % 2 ? -0.0 : 0.0, false), put<float>(bytes, (f + i) % 3, false);
+        put<short>(bytes, 0, false);
+    }
+    return bytes;
+}
+
+/// A line each, with comments, normals, texture coordinates and colours of faces.
+const std::string awkward_off =
+    "STNOFF # comment\n\n6 4 9\n0 0 0 0 0 1 0 0\n# between\n1 0 0 0 0 1 1 0 # behind\n  \t\n1 1 0 0 0 1 1 1\r\n0 1 0 0 0 1 0 1 7 8\n2 2 2 0 0 1 0.5 0.5\n"
+    "3 3 3 0 0 1 0.25 1\n4 0 1 2 3\n3 1 2 4 255 0 0\n\n# end\n0\n3 5 4 3 1 1\n\n# last\n";
+
+void check_all_cuts(Reader read, const std::string& text) {
+    const MeshFile whole = read_with(read, text, {1, 1, 0});
+    for (const std::size_t count : part_counts(text)) {
+        INFO(count << " parts");
+        check_same(read_with(read, text, {1, count, 0}), whole);
+    }
+}
+
+void check_all_refusals(Reader read, const std::string& text, const std::string& expected) {
+    INFO(text);
+    CHECK_THAT(refusal_with(read, text, {1, 1, 0}), Catch::Contains(expected));
+    for (const std::size_t count : part_counts(text)) CHECK(refusal_with(read, text, {1, count, 0}) == refusal_with(read, text, {1, 1, 0}));
+}
+
+std::string replaced(std::string text, const std::string& old, const std::string& by) {
+    const std::size_t place = text.rfind(old);
+    REQUIRE(place != std::string::npos);
+    return text.replace(place, old.size(), by);
+}
+
+}  // namespace
+
+TEST_CASE("PLY that is read in parts gives what it gives as a whole", "[io][ply][parts][thread]") {
+    const std::string ascii = "ply\nformat ascii 1.0\n" + awkward_ply_header + awkward_ply_body;
+    const MeshFile whole = read_with(lcl::read_ply, ascii, {1, 1, 0});
+    CHECK(whole.mesh.face_offsets == std::vector<Index>{0, 3, 7, 10, 14});
+    CHECK(whole.uvs.corner_indices == std::vector<Index>{0, 1, 2, -1, -1, -1, -1, -1, -1, -1, 3, 4, 5, 6});
+    check_all_cuts(lcl::read_ply, ascii);
+    check_all_cuts(lcl::read_ply, ascii + "\n\n");
+    std::string carriage_returns = ascii;
+    std::replace(carriage_returns.begin(), carriage_returns.end(), '\n', '\r');
+    check_all_cuts(lcl::read_ply, carriage_returns);
+    check_all_cuts(lcl::read_ply, binary_ply(false));
+    check_all_cuts(lcl::read_ply, binary_ply(true));
+}
+
+TEST_CASE("the first row of a PLY file that is wrong is named, however it is cut", "[io][ply][parts]") {
+    const std::string ascii = "ply\nformat ascii 1.0\n" + awkward_ply_header + awkward_ply_body;
+    check_all_refusals(lcl::read_ply, replaced(replaced(ascii, "2 5 0 2 2", "2 5 0 2"), "0 4 1", "x 4 1"), "cut:28: the line ends where a value");
+    check_all_refusals(lcl::read_ply, replaced(replaced(ascii, "3 2 7", "3 2 x"), "3 2 8", "3 2 y"), "cut:32: 'x'");
+    check_all_refusals(lcl::read_ply, replaced(ascii, "2 1 2\n0", "2 1 2\n"), "the file ends");
+    check_all_refusals(lcl::read_ply, replaced(ascii, "\n2\n\n3", "\n2 2\n\n3"), "cut:20: the row has more values");
+    for (const std::string& bytes : {binary_ply(false), binary_ply(true)}) {
+        check_all_refusals(lcl::read_ply, bytes.substr(0, bytes.size() - 1), "(byte ");
+        check_all_refusals(lcl::read_ply, bytes.substr(0, bytes.size() - 900), "(byte ");
+    }
+}
+
+TEST_CASE("OFF that is read in parts gives what it gives as a whole", "[io][off][parts][thread]") {
+    CHECK(read_with(lcl::read_off, awkward_off, {1, 1, 0}).warnings.size() == 2);
+    check_all_cuts(lcl::read_off, awkward_off);
+    check_all_cuts(lcl::read_off, awkward_off + "more");
+    check_all_cuts(lcl::read_off, replaced(awkward_off, "0 0 0 0 0 1 0 0\n", "0 0\n0 0 0 1 0 0\n"));
+    check_all_cuts(lcl::read_off, replaced(replaced(awkward_off, "0 0 0 0 0 1 0 0\n", "0 0\n0 0 0 1 0 0\n"), "3 5 4 3 1 1\n", "3 5 4 3 1 1"));
+    check_all_cuts(lcl::read_off, "COFF 3 1 0\n0 0 0 1 0 0\n1 0 0 0 1 0 1\n0 1 0 0 0 1\n3 0 1 2\n");
+    check_all_cuts(lcl::read_off, "OFF\r3 1 0\r0 0 0\r1 0 0\r0 1 0\r3 0 1 2\r");
+}
+
+TEST_CASE("the first line of an OFF file that is wrong is named, however it is cut", "[io][off][parts]") {
+    check_all_refusals(lcl::read_off, replaced(replaced(awkward_off, "1 0 1 7 8", "1 0 x"), "3 5 4", "y 5 4"), "cut:9: 'x'");
+    check_all_refusals(lcl::read_off, replaced(awkward_off, "3 1 2 4 255", "3 1 2.5 4 255"), "cut:13: '2.5'");
+    check_all_refusals(lcl::read_off, replaced(awkward_off, "1 1 0 0 0 1 1 1\r\n", "1 1 0\r\n"), "cut:");  // takes numbers of the next line
+    check_all_refusals(lcl::read_off, replaced(awkward_off, "3 5 4 3 1 1", "3 5"), "the file ends");
+}
+
+TEST_CASE("corners of STL are welded alike, many or one at a time", "[io][stl][parts]") {
+    const MeshFile file = read_with(lcl::read_stl, binary_stl(), {});
+    std::string ascii = "solid\n";
+    for (Index f = 0; f < file.mesh.face_count(); ++f) {
+        ascii += "facet normal 0 0 0\nouter loop\n";
+        for (int i = 0; i < 3; ++i) ascii += "vertex " + std::to_string((f + i) % 20) + (f % 2 ? " -0 " : " 0 ") + std::to_string((f + i) % 3) + "\n";
+        ascii += "endloop\nendfacet\n";
+    }
+    CHECK(file.mesh.vertex_count == 60);
+    CHECK(same_mesh(file.mesh, read_with(lcl::read_stl, ascii + "endsolid\n", {}).mesh));
+    CHECK_FALSE(std::signbit(file.mesh.positions[1]));
+}
+
 TEST_CASE("a file that becomes shorter while it is read is an error", "[io][parts]") {
     const TemporaryFolder folder;
     const OpenText file(folder, awkward_obj);

@@ -28,6 +28,8 @@ public:
     OwnedBytes read_all() const;
 
 private:
+    bool read_pieces(char* bytes) const;
+
     std::string path_;
     int descriptor_;
     std::size_t size_ = 0;

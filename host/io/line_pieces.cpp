@@ -3,12 +3,14 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <optional>
 #include <system_error>
 #include <thread>
 
 #include <unistd.h>
 
 #include "host/error.h"
+#include "host/parallel.h"
 
 namespace lcl {
 namespace {
@@ -40,7 +42,46 @@ const char* bytes_of(const Text& text, std::size_t at, std::size_t size, char* b
     return buffer;
 }
 
+bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\v' || c == '\f'; }
+
+/// Lines of LF or CR LF with something in them; nothing if there is a CR that stands alone.
+std::optional<std::size_t> count_filled_lines(std::string_view text, char comment) {
+    std::size_t count = 0;
+    while (!text.empty()) {
+        const std::string_view line = text.substr(0, text.find('\n'));
+        const std::size_t carriage_return = line.find('\r');
+        const bool ends_text = line.size() == text.size();
+        if (carriage_return != std::string_view::npos && (ends_text || carriage_return + 1 != line.size())) return std::nullopt;
+        const auto first = std::find_if_not(line.begin(), line.end(), is_blank);
+        count += first != line.end() && *first != '\r' && (comment == 0 || *first != comment);
+        text.remove_prefix(line.size() + !ends_text);
+    }
+    return count;
+}
+
 }  // namespace
+
+std::vector<LineCut> count_lines(std::string_view text, char comment, const Splitting& splitting) {
+    const std::string no_name;
+    const Text memory{text.data(), text.size(), no_name};
+    const std::size_t parts = splitting.parts_of(text.size());
+    std::vector<std::optional<std::size_t>> counts(parts);
+    const auto begin_of = [&](std::size_t part) { return next_line(memory, text.size() / parts * part + text.size() % parts * part / parts); };
+    parallel_for(
+        parts,
+        [&](std::size_t first, std::size_t last) {
+            for (std::size_t i = first; i < last; ++i) counts[i] = count_filled_lines(text.substr(begin_of(i), begin_of(i + 1) - begin_of(i)), comment);
+        },
+        1);
+    std::vector<LineCut> cuts;
+    std::size_t number = 0;
+    for (std::size_t i = 0; i < parts; ++i) {
+        if (!counts[i]) return {};
+        number += *counts[i];
+        cuts.push_back({text.data() + begin_of(i + 1), number});
+    }
+    return cuts;
+}
 
 std::size_t Splitting::parts_of(std::size_t size) const {
     const std::size_t most = most_parts > 0 ? most_parts : std::max(1u, std::thread::hardware_concurrency());

@@ -6,6 +6,7 @@
 #include <memory>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace lcl {
 
@@ -44,5 +45,15 @@ private:
     std::size_t at_, end_, capacity_;
     std::unique_ptr<char[]> buffer_;
 };
+
+/// A place where a line begins, and how many lines with something in them come before it.
+struct LineCut {
+    const char* place;
+    std::size_t number;
+};
+
+/// Cuts of a text, first to last, its end among them, its beginning not; empty where a CR alone ends lines. Nothing but blanks, or a comment behind them (0:
+/// there are none), is no line.
+std::vector<LineCut> count_lines(std::string_view text, char comment, const Splitting& splitting);
 
 }  // namespace lcl

@@ -104,18 +104,16 @@ private:
         file_.mesh.face_offsets.push_back(static_cast<Index>(corners.size()));
     }
 
-    /// The corners of a line that are plain short numbers between blanks, as most are: up to the first that is something else.
+    /// The corners of a line that are plain short numbers, as most are, up to the first that is something else.
     void read_plain_corners() {
         if (!file_.uvs.corner_indices.empty()) return;
-        const char* at = scan_.at();
         for (;;) {
-            while (at != scan_.end() && *at == ' ') ++at;
-            const char* const first = at;
-            Index value = 0;
-            for (; at != scan_.end() && *at >= '0' && *at <= '9' && at - first < 9; ++at) value = 10 * value + (*at - '0');
-            if (value == 0 || at == scan_.end() || !(*at == ' ' || is_line_break(*at))) return;
+            scan_.skip_blanks();
+            const char* const first = scan_.at();
+            Index value;
+            if (!scan_.take_short_number(value)) return;
+            if (value == 0) return scan_.move_to(first);  // what is wrong with it is said elsewhere
             file_.mesh.face_vertices.push_back(value - 1);
-            scan_.move_to(at);
         }
     }
 

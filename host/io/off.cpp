@@ -12,6 +12,7 @@
 #include <cmath>
 
 #include "host/io/format.h"
+#include "host/io/join_faces.h"
 #include "host/io/number_write.h"
 #include "host/io/text_scan.h"
 
@@ -23,13 +24,17 @@ constexpr double no_alpha = -1;  // of a vertex whose colour has three numbers
 
 class OffReader {
 public:
-    explicit OffReader(const InputBytes& input) : scan_(input, '#'), size_(input.size) {}
+    explicit OffReader(const InputBytes& input) : scan_(input, '#'), size_(input.size), splitting_(input.splitting) {}
 
     MeshFile read() {
         read_header();
         read_counts();
-        read_vertices();
-        read_faces();
+        prepare();
+        if (!read_at_once()) {
+            Rows rows{0, vertex_count_ + face_count_};
+            read_rows(scan_, rows);
+            take(rows);
+        }
         finish();
         return std::move(file_);
     }
@@ -80,35 +85,102 @@ private:
         return static_cast<std::size_t>(count);
     }
 
-    void read_vertices() {
+    void prepare() {
         file_.mesh.vertex_count = static_cast<Index>(vertex_count_);
         file_.mesh.positions.resize(3 * vertex_count_);
         if (has_texture_coordinates_) file_.uvs.values.resize(2 * vertex_count_);
-        for (std::size_t v = 0; v < vertex_count_; ++v) {
-            read_numbers(&file_.mesh.positions[3 * v], 3, "a coordinate");
-            double normal[3];
-            if (has_normals_) read_numbers(normal, 3, "a coordinate of a normal");
-            if (has_colours_) read_colour(v);
-            if (has_texture_coordinates_) read_numbers(&file_.uvs.values[2 * v], 2, "a texture coordinate");
-            skip_extras(vertices_with_extras_);
-        }
     }
 
-    void read_numbers(double* values, int count, const char* what) {
+    /// Rows of the body, vertices and then faces, and what is found in them.
+    struct Rows {
+        std::size_t first, last;
+        PolygonMesh mesh = {};
+        std::size_t vertices_with_extras = 0, faces_with_extras = 0;
+    };
+
+    void read_rows(TextScanner& scan, Rows& rows) {
+        const std::size_t first_face = std::max(rows.first, vertex_count_);
+        const std::size_t faces = rows.first == 0 ? face_count_ : rows.last - std::min(rows.last, first_face);  // the others are appended to the first
+        rows.mesh.face_offsets.reserve(faces + 1);
+        rows.mesh.face_vertices.reserve(4 * faces);
+        for (std::size_t row = rows.first; row < std::min(rows.last, vertex_count_); ++row) read_vertex(scan, row, rows);
+        for (std::size_t row = first_face; row < rows.last; ++row) read_face(scan, row - vertex_count_, rows);
+    }
+
+    /// Reads ranges of rows at once where each row is a line, as is usual; false, and nothing done, where it is not, or where a line is wrong: which is the
+    /// first is found out by reading from the beginning. Colours need all that come before them.
+    bool read_at_once() {
+        if (has_colours_) return false;
+        const std::vector<LineCut> cuts = count_lines({scan_.at(), scan_.remaining()}, '#', splitting_);
+        if (cuts.size() < 2 || cuts.back().number != vertex_count_ + face_count_) return false;
+        std::vector<Rows> parts;
+        for (const LineCut& cut : cuts) parts.push_back({parts.empty() ? 0 : parts.back().last, cut.number});
+        try {
+            parallel_for(
+                parts.size(),
+                [&](std::size_t first, std::size_t last) {
+                    for (std::size_t i = first; i < last; ++i) read_lines(i == 0 ? scan_.at() : cuts[i - 1].place, cuts[i].place, parts[i]);
+                },
+                1);
+        } catch (const BadInput&) {
+            return false;
+        }
+        for (std::size_t i = 1; i < parts.size(); ++i)
+            if (!fit_together(parts[0].mesh, parts[i].mesh)) return false;
+            else add(parts[0], parts[i]);
+        scan_.move_to(cuts.back().place);
+        take(parts[0]);
+        return true;
+    }
+
+    /// BadInput if the rows do not end where the lines end.
+    void read_lines(const char* begin, const char* end, Rows& rows) {
+        TextScanner scan = scan_, behind = scan_;
+        scan.move_to(begin);
+        read_rows(scan, rows);
+        scan.skip_space();
+        behind.move_to(end);
+        behind.skip_space();
+        if (scan.at() != behind.at()) throw BadInput("a row is no line");
+    }
+
+    static void add(Rows& whole, Rows& part) {
+        append_faces(whole.mesh, part.mesh);
+        whole.vertices_with_extras += part.vertices_with_extras;
+        whole.faces_with_extras += part.faces_with_extras;
+    }
+
+    void take(Rows& rows) {
+        file_.mesh.face_offsets = std::move(rows.mesh.face_offsets);
+        file_.mesh.face_vertices = std::move(rows.mesh.face_vertices);
+        vertices_with_extras_ = rows.vertices_with_extras;
+        faces_with_extras_ = rows.faces_with_extras;
+    }
+
+    void read_vertex(TextScanner& scan, std::size_t v, Rows& rows) {
+        read_numbers(scan, &file_.mesh.positions[3 * v], 3, "a coordinate");
+        double normal[3];
+        if (has_normals_) read_numbers(scan, normal, 3, "a coordinate of a normal");
+        if (has_colours_) read_colour(scan, v);
+        if (has_texture_coordinates_) read_numbers(scan, &file_.uvs.values[2 * v], 2, "a texture coordinate");
+        skip_extras(scan, rows.vertices_with_extras);
+    }
+
+    static void read_numbers(TextScanner& scan, double* values, int count, const char* what) {
         for (int i = 0; i < count; ++i) {
-            scan_.skip_space();
-            values[i] = scan_.number(what);
+            scan.skip_space();
+            values[i] = scan.number(what);
         }
     }
 
     /// Three or four numbers: alpha may be missing where nothing else follows.
-    void read_colour(std::size_t vertex) {
+    void read_colour(TextScanner& scan, std::size_t vertex) {
         double values[4];
         int count = 0;
-        for (scan_.skip_blanks(); count < 3 || (count < 4 && !scan_.at_line_end()); scan_.skip_blanks(), ++count) {
-            const char* first = scan_.at();
-            values[count] = scan_.number("a component of a colour");
-            colours_are_whole_ = colours_are_whole_ && std::all_of(first, scan_.at(), [](char c) { return c >= '0' && c <= '9'; });
+        for (scan.skip_blanks(); count < 3 || (count < 4 && !scan.at_line_end()); scan.skip_blanks(), ++count) {
+            const char* first = scan.at();
+            values[count] = scan.number("a component of a colour");
+            colours_are_whole_ = colours_are_whole_ && std::all_of(first, scan.at(), [](char c) { return c >= '0' && c <= '9'; });
             largest_colour_ = std::max(largest_colour_, values[count]);
         }
         for (int i = 0; i < count; ++i) {
@@ -118,36 +190,32 @@ private:
     }
 
     /// What the line holds beyond what was expected is skipped; counts the lines where there was something.
-    void skip_extras(std::size_t& lines_with_extras) {
-        scan_.skip_blanks();
-        lines_with_extras += !scan_.at_line_end();
-        scan_.skip_line();
+    static void skip_extras(TextScanner& scan, std::size_t& lines_with_extras) {
+        scan.skip_blanks();
+        lines_with_extras += !scan.at_line_end();
+        scan.skip_line();
     }
 
-    void read_faces() {
-        PolygonMesh& mesh = file_.mesh;
-        mesh.face_offsets.reserve(face_count_ + 1);
-        mesh.face_vertices.reserve(4 * face_count_);
-        for (std::size_t f = 0; f < face_count_; ++f) {
-            scan_.skip_space();
-            const char* first = scan_.at();
-            const std::int64_t degree = scan_.integer("the number of a face's corners");
-            if (degree < 0 || static_cast<std::uint64_t>(degree) > scan_.remaining() / 2)
-                scan_.fail(first, "face " + std::to_string(f) + " is given " + std::to_string(degree) + " corners, which the file cannot hold");
-            for (std::int64_t c = 0; c < degree; ++c) {
-                scan_.skip_space();
-                mesh.face_vertices.push_back(scan_.index("a vertex of a face"));
-            }
-            if (mesh.face_vertices.size() > static_cast<std::size_t>(std::numeric_limits<Index>::max()))
-                scan_.fail(first, "the file has more than 2147483647 face corners, the most that can be numbered");
-            mesh.face_offsets.push_back(static_cast<Index>(mesh.face_vertices.size()));
-            skip_extras(faces_with_extras_);
+    void read_face(TextScanner& scan, std::size_t face, Rows& rows) {
+        std::vector<Index>& corners = rows.mesh.face_vertices;
+        scan.skip_space();
+        const char* first = scan.at();
+        const std::int64_t degree = scan.integer("the number of a face's corners");
+        if (degree < 0 || static_cast<std::uint64_t>(degree) > scan.remaining() / 2)
+            scan.fail(first, "face " + std::to_string(face) + " is given " + std::to_string(degree) + " corners, which the file cannot hold");
+        for (std::int64_t c = 0; c < degree; ++c) {
+            scan.skip_space();
+            corners.push_back(scan.index("a vertex of a face"));
         }
-        scan_.skip_space();
-        if (!scan_.at_end()) file_.warnings.push_back(scan_.place(scan_.at()) + "text behind the last face was ignored");
+        if (corners.size() > static_cast<std::size_t>(std::numeric_limits<Index>::max()))
+            scan.fail(first, "the file has more than 2147483647 face corners, the most that can be numbered");
+        rows.mesh.face_offsets.push_back(static_cast<Index>(corners.size()));
+        skip_extras(scan, rows.faces_with_extras);
     }
 
     void finish() {
+        scan_.skip_space();
+        if (!scan_.at_end()) file_.warnings.push_back(scan_.place(scan_.at()) + "text behind the last face was ignored");
         finish_colours();
         if (has_texture_coordinates_) file_.uvs.corner_indices = file_.mesh.face_vertices;
         if (vertices_with_extras_ > 0)
@@ -174,6 +242,7 @@ private:
 
     TextScanner scan_;
     std::size_t size_;
+    Splitting splitting_;
     MeshFile file_;
     bool has_texture_coordinates_ = false, has_colours_ = false, has_normals_ = false;
     std::size_t vertex_count_ = 0, face_count_ = 0, vertices_with_extras_ = 0, faces_with_extras_ = 0;

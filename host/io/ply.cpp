@@ -6,116 +6,13 @@
 // (two numbers a corner, as MeshLab writes it). Everything else is skipped, with a warning. An ASCII row ends with its line. ASCII numbers are read and
 // written as doubles, also where the header says float: text can hold them, and nothing is lost.
 #include <algorithm>
-#include <cmath>
-#include <cstring>
 
-#include "host/io/format.h"
-#include "host/io/number_write.h"
-#include "host/io/ply_types.h"
-#include "host/io/text_scan.h"
+#include "host/io/join_faces.h"
+#include "host/io/ply_source.h"
+#include "host/parallel.h"
 
 namespace lcl {
 namespace {
-
-struct Property {
-    std::string name;
-    Scalar scalar = Scalar::float64;
-    bool is_list = false;
-    Scalar count_scalar = Scalar::uint8;
-    std::string type_name;
-};
-
-struct Element {
-    std::string name;
-    std::size_t count = 0;
-    std::vector<Property> properties;
-    const char* place = nullptr;  // its line in the header
-};
-
-/// Values of an ASCII body, row by row.
-class AsciiSource {
-public:
-    explicit AsciiSource(TextScanner& scan) : scan_(scan) {}
-
-    void begin_row() { scan_.skip_space(); }
-
-    double scalar(Scalar) {
-        scan_.skip_blanks();
-        return scan_.number("a value");
-    }
-
-    std::int64_t integer(Scalar scalar) {
-        scan_.skip_blanks();
-        return is_floating(scalar) ? whole(scan_.number("an index")) : scan_.integer("an index or the length of a list");
-    }
-
-    void end_row() {
-        scan_.skip_blanks();
-        if (!scan_.at_line_end()) fail("the row has more values than the header announces; correct the header or the row");
-        scan_.skip_line();
-    }
-
-    std::size_t least_size(Scalar) const { return 2; }               // "0 "
-    std::size_t remaining() const { return scan_.remaining() + 1; }  // the last line may lack its end
-    [[noreturn]] void fail(const std::string& sentence) const { scan_.fail(scan_.at(), sentence); }
-
-private:
-    std::int64_t whole(double value) const {
-        if (!(std::fabs(value) < 9e15) || value != std::floor(value)) fail("an index is no whole number");
-        return static_cast<std::int64_t>(value);
-    }
-
-    TextScanner& scan_;
-};
-
-/// Values of a binary body.
-class BinarySource {
-public:
-    BinarySource(const InputBytes& input, const char* at, bool swap) : input_(input), at_(at), swap_(swap) {}
-
-    void begin_row() const {}
-    void end_row() const {}
-
-    double scalar(Scalar scalar) {
-        switch (scalar) {
-            case Scalar::int8: return take<std::int8_t>();
-            case Scalar::uint8: return take<std::uint8_t>();
-            case Scalar::int16: return take<std::int16_t>();
-            case Scalar::uint16: return take<std::uint16_t>();
-            case Scalar::int32: return take<std::int32_t>();
-            case Scalar::uint32: return take<std::uint32_t>();
-            case Scalar::float32: return static_cast<double>(take<float>());
-            case Scalar::float64: break;
-        }
-        return take<double>();
-    }
-
-    std::int64_t integer(Scalar scalar_type) {
-        const double value = scalar(scalar_type);
-        if (!(std::fabs(value) < 9e15) || value != std::floor(value)) fail("an index is no whole number");
-        return static_cast<std::int64_t>(value);
-    }
-
-    std::size_t least_size(Scalar scalar) const { return size_of(scalar); }
-    std::size_t remaining() const { return static_cast<std::size_t>(input_.data + input_.size - at_); }
-    [[noreturn]] void fail(const std::string& sentence) const {
-        throw BadInput(input_.name + ": " + sentence + " (byte " + std::to_string(at_ - input_.data) + ")");
-    }
-
-private:
-    template <class T>
-    T take() {
-        T value;
-        if (remaining() < sizeof(T)) fail("the file ends within its binary data");
-        std::memcpy(&value, at_, sizeof(T));
-        at_ += sizeof(T);
-        return swap_ ? swap_bytes(value) : value;
-    }
-
-    const InputBytes& input_;
-    const char* at_;
-    bool swap_;
-};
 
 class PlyReader {
 public:
@@ -183,7 +80,7 @@ private:
     }
 
     void read_element(const char* place) {
-        Element element;
+        PlyElement element;
         element.name = next_word("an element's name");
         scan_.skip_blanks();
         const char* first = scan_.at();
@@ -206,7 +103,7 @@ private:
 
     void read_property(const char* place) {
         if (elements_.empty()) scan_.fail(place, "a property stands before the first element");
-        Property property;
+        PlyProperty property;
         scan_.skip_blanks();
         const char* first = scan_.at();
         property.is_list = scan_.word() == "list";
@@ -223,7 +120,7 @@ private:
     template <class Source>
     void read_body(Source& source) {
         bool has_vertices = false, has_faces = false;
-        for (const Element& element : elements_) {
+        for (const PlyElement& element : elements_) {
             check_count(source, element);
             if (element.name == "vertex" && !has_vertices) {
                 read_vertices(source, element);
@@ -239,9 +136,9 @@ private:
     }
 
     template <class Source>
-    void check_count(const Source& source, const Element& element) {
+    void check_count(const Source& source, const PlyElement& element) {
         std::size_t row_size = 0;
-        for (const Property& property : element.properties) row_size += source.least_size(property.is_list ? property.count_scalar : property.scalar);
+        for (const PlyProperty& property : element.properties) row_size += source.least_size(property.is_list ? property.count_scalar : property.scalar);
         const bool is_numbered = element.name == "vertex" || element.name == "face";
         if ((row_size > 0 && element.count > source.remaining() / row_size) ||
             (is_numbered && element.count > static_cast<std::size_t>(std::numeric_limits<Index>::max())))
@@ -255,22 +152,41 @@ private:
         std::size_t stride = 0;
     };
 
-    template <class Source>
-    void read_vertices(Source& source, const Element& element) {
-        const std::vector<Column> columns = make_columns(element);
-        for (std::size_t v = 0; v < element.count; ++v) {
-            source.begin_row();
-            for (std::size_t p = 0; p < columns.size(); ++p) {
-                const Property& property = element.properties[p];
-                if (property.is_list) skip_list(source, property);
-                else if (columns[p].first) columns[p].first[v * columns[p].stride] = source.scalar(property.scalar);
-                else source.scalar(property.scalar);
-            }
-            source.end_row();
-        }
+    /// Calls read_range(range, index) for the rows of an element, ranges of them at once. The first exception is that of the first range, so that the first row
+    /// that is wrong is named.
+    template <class Source, class ReadRange>
+    void read_rows(Source& source, std::vector<RowRange<Source>>& ranges, const ReadRange& read_range) {
+        parallel_for(
+            ranges.size(),
+            [&](std::size_t first, std::size_t last) {
+                for (std::size_t i = first; i < last; ++i) read_range(ranges[i], i);
+            },
+            1);
+        source.move_behind(ranges.back().source);
     }
 
-    std::vector<Column> make_columns(const Element& element) {
+    template <class Source>
+    void read_vertices(Source& source, const PlyElement& element) {
+        const std::vector<Column> columns = make_columns(element);
+        std::vector<RowRange<Source>> ranges = source.cut(element, input_.splitting);
+        read_rows(source, ranges, [&](RowRange<Source>& range, std::size_t) {
+            for (std::size_t v = range.first; v < range.last; ++v) read_vertex(range.source, element, columns, v);
+        });
+    }
+
+    template <class Source>
+    void read_vertex(Source& source, const PlyElement& element, const std::vector<Column>& columns, std::size_t v) {
+        source.begin_row();
+        for (std::size_t p = 0; p < columns.size(); ++p) {
+            const PlyProperty& property = element.properties[p];
+            if (property.is_list) skip_list(source, property);
+            else if (columns[p].first) columns[p].first[v * columns[p].stride] = source.scalar(property.scalar);
+            else source.scalar(property.scalar);
+        }
+        source.end_row();
+    }
+
+    std::vector<Column> make_columns(const PlyElement& element) {
         const int axes[3] = {find_axis(element, "x"), find_axis(element, "y"), find_axis(element, "z")};
         file_.ply_position_type = element.properties[static_cast<std::size_t>(axes[0])].scalar == Scalar::float32 ? "float" : "double";
         file_.mesh.vertex_count = static_cast<Index>(element.count);
@@ -279,7 +195,7 @@ private:
         std::vector<Column> columns(element.properties.size());
         double* const positions = element.count > 0 ? file_.mesh.positions.data() : nullptr;
         for (std::size_t p = 0; p < columns.size(); ++p) {
-            const Property& property = element.properties[p];
+            const PlyProperty& property = element.properties[p];
             const auto axis = std::find(axes, axes + 3, static_cast<int>(p));
             if (property.is_list) {
                 warn_of_skipped("vertices", property);
@@ -293,55 +209,98 @@ private:
         return columns;
     }
 
-    int find_axis(const Element& element, const char* name) const {
+    int find_axis(const PlyElement& element, const char* name) const {
         for (std::size_t p = 0; p < element.properties.size(); ++p)
             if (!element.properties[p].is_list && element.properties[p].name == name) return static_cast<int>(p);
         scan_.fail(element.place, std::string("the vertices have no property '") + name + "'");
     }
 
-    static VertexProperty make_property(const Property& property, std::size_t count) {
+    static VertexProperty make_property(const PlyProperty& property, std::size_t count) {
         const bool is_colour = property.name == "red" || property.name == "green" || property.name == "blue" || property.name == "alpha";
         return {property.name, is_colour ? VertexProperty::Kind::colour : VertexProperty::Kind::scalar, property.type_name, std::vector<double>(count)};
     }
 
+    /// Faces of a range of rows: offsets and indices of texture coordinates count from its first.
+    struct FaceRows {
+        PolygonMesh mesh;
+        TextureCoordinates uvs;
+        std::size_t faces_without_uvs = 0;
+    };
+
     template <class Source>
-    void read_faces(Source& source, const Element& element) {
-        const Property* corners = find_corners(element);
-        const Property* texcoord = find_texture_coordinates(element);
-        for (const Property& property : element.properties)
-            if (&property != corners && &property != texcoord) warn_of_skipped("faces", property);
-        PolygonMesh& mesh = file_.mesh;
-        mesh.face_offsets.reserve(element.count + 1);
-        mesh.face_vertices.reserve(std::min(4 * element.count, source.remaining()));
-        std::vector<double> values;
-        for (std::size_t f = 0; f < element.count; ++f) {
-            source.begin_row();
-            for (const Property& property : element.properties) {
-                if (&property == corners) read_corners(source, property, f);
-                else if (&property == texcoord) read_list(source, property, values);
-                else if (property.is_list) skip_list(source, property);
-                else source.scalar(property.scalar);
-            }
-            source.end_row();
-            if (texcoord) add_texture_coordinates(values);
-        }
+    void read_faces(Source& source, const PlyElement& element) {
+        const FaceColumns columns{find_corners(element), find_texture_coordinates(element)};
+        for (const PlyProperty& property : element.properties)
+            if (&property != columns.corners && &property != columns.texcoord) warn_of_skipped("faces", property);
+        std::vector<RowRange<Source>> ranges = source.cut(element, input_.splitting);
+        std::vector<FaceRows> parts(ranges.size());
+        read_rows(source, ranges, [&](RowRange<Source>& range, std::size_t i) {
+            const std::size_t faces = i == 0 ? element.count : range.last - range.first;  // the others are appended to the first
+            parts[i].mesh.face_offsets.reserve(faces + 1);
+            parts[i].mesh.face_vertices.reserve(std::min(4 * faces, range.source.remaining()));
+            for (std::size_t f = range.first; f < range.last; ++f) read_face(range.source, element, columns, f, parts[i]);
+        });
+        join(source, parts);
         finish_texture_coordinates();
     }
 
-    const Property* find_corners(const Element& element) const {
-        for (const Property& property : element.properties)
+    struct FaceColumns {
+        const PlyProperty* corners;
+        const PlyProperty* texcoord;
+    };
+
+    template <class Source>
+    void read_face(Source& source, const PlyElement& element, const FaceColumns& columns, std::size_t face, FaceRows& rows) {
+        std::vector<double> values;
+        source.begin_row();
+        for (const PlyProperty& property : element.properties) {
+            if (&property == columns.corners) read_corners(source, property, face, rows.mesh);
+            else if (&property == columns.texcoord) read_list(source, property, values);
+            else if (property.is_list) skip_list(source, property);
+            else source.scalar(property.scalar);
+        }
+        source.end_row();
+        if (columns.texcoord) add_texture_coordinates(values, rows);
+    }
+
+    template <class Source>
+    void join(const Source& source, std::vector<FaceRows>& parts) {
+        FaceRows& whole = parts[0];
+        for (std::size_t i = 1; i < parts.size(); ++i) {
+            FaceRows& part = parts[i];
+            if (!fit_together(whole.mesh, part.mesh)) fail_corner_count(source);
+            const auto uvs = static_cast<Index>(whole.uvs.values.size() / 2);
+            for (Index& index : part.uvs.corner_indices) index += index >= 0 ? uvs : 0;
+            append_faces(whole.mesh, part.mesh);
+            append(whole.uvs.values, part.uvs.values);
+            append(whole.uvs.corner_indices, part.uvs.corner_indices);
+            whole.faces_without_uvs += part.faces_without_uvs;
+        }
+        file_.mesh.face_offsets = std::move(whole.mesh.face_offsets);
+        file_.mesh.face_vertices = std::move(whole.mesh.face_vertices);
+        file_.uvs = std::move(whole.uvs);
+        faces_without_uvs_ = whole.faces_without_uvs;
+    }
+
+    template <class Source>
+    [[noreturn]] static void fail_corner_count(const Source& source) {
+        source.fail("the file has more than 2147483647 face corners, the most that can be numbered");
+    }
+
+    const PlyProperty* find_corners(const PlyElement& element) const {
+        for (const PlyProperty& property : element.properties)
             if (property.is_list && (property.name == "vertex_indices" || property.name == "vertex_index")) return &property;
         scan_.fail(element.place, "the faces have no list 'vertex_indices' or 'vertex_index'");
     }
 
-    static const Property* find_texture_coordinates(const Element& element) {
-        for (const Property& property : element.properties)
+    static const PlyProperty* find_texture_coordinates(const PlyElement& element) {
+        for (const PlyProperty& property : element.properties)
             if (property.is_list && property.name == "texcoord") return &property;
         return nullptr;
     }
 
     template <class Source>
-    std::size_t list_length(Source& source, const Property& property) {
+    std::size_t list_length(Source& source, const PlyProperty& property) {
         const std::int64_t length = source.integer(property.count_scalar);
         if (length < 0) source.fail("a list '" + printable(property.name) + "' has the length " + std::to_string(length));
         if (static_cast<std::uint64_t>(length) > source.remaining() / source.least_size(property.scalar))
@@ -350,57 +309,63 @@ private:
     }
 
     template <class Source>
-    void read_corners(Source& source, const Property& property, std::size_t face) {
-        std::vector<Index>& corners = file_.mesh.face_vertices;
+    void read_corners(Source& source, const PlyProperty& property, std::size_t face, PolygonMesh& mesh) {
+        std::vector<Index>& corners = mesh.face_vertices;
         const std::size_t length = list_length(source, property);
-        for (std::size_t i = 0; i < length; ++i) {
+        const bool is_taken = source.take_indices(property.scalar, length, corners);
+        for (std::size_t i = 0; i < length && !is_taken; ++i) {
             const std::int64_t vertex = source.integer(property.scalar);
             if (vertex < std::numeric_limits<Index>::min() || vertex > std::numeric_limits<Index>::max())
                 source.fail("face " + std::to_string(face) + " uses vertex " + std::to_string(vertex) + "; the most is 2147483647");
             corners.push_back(static_cast<Index>(vertex));
         }
-        if (corners.size() > static_cast<std::size_t>(std::numeric_limits<Index>::max()))
-            source.fail("the file has more than 2147483647 face corners, the most that can be numbered");
-        file_.mesh.face_offsets.push_back(static_cast<Index>(corners.size()));
+        if (corners.size() > static_cast<std::size_t>(std::numeric_limits<Index>::max())) fail_corner_count(source);
+        mesh.face_offsets.push_back(static_cast<Index>(corners.size()));
     }
 
     template <class Source>
-    void read_list(Source& source, const Property& property, std::vector<double>& values) {
+    void read_list(Source& source, const PlyProperty& property, std::vector<double>& values) {
         values.resize(list_length(source, property));
         for (double& value : values) value = source.scalar(property.scalar);
     }
 
     template <class Source>
-    void skip_list(Source& source, const Property& property) {
+    void skip_list(Source& source, const PlyProperty& property) {
         const std::size_t length = list_length(source, property);
         for (std::size_t i = 0; i < length; ++i) source.scalar(property.scalar);
     }
 
     template <class Source>
-    void skip_element(Source& source, const Element& element) {
+    void skip_element(Source& source, const PlyElement& element) {
         file_.warnings.push_back("the element '" + printable(element.name) + "' was skipped");
         if (element.properties.empty()) return;
-        for (std::size_t row = 0; row < element.count; ++row) {
-            source.begin_row();
-            for (const Property& property : element.properties) {
-                if (property.is_list) skip_list(source, property);
-                else source.scalar(property.scalar);
-            }
-            source.end_row();
-        }
+        std::vector<RowRange<Source>> ranges = source.cut(element, input_.splitting);
+        read_rows(source, ranges, [&](RowRange<Source>& range, std::size_t) {
+            for (std::size_t row = range.first; row < range.last; ++row) skip_row(range.source, element);
+        });
     }
 
-    void warn_of_skipped(const char* owner, const Property& property) {
+    template <class Source>
+    void skip_row(Source& source, const PlyElement& element) {
+        source.begin_row();
+        for (const PlyProperty& property : element.properties) {
+            if (property.is_list) skip_list(source, property);
+            else source.scalar(property.scalar);
+        }
+        source.end_row();
+    }
+
+    void warn_of_skipped(const char* owner, const PlyProperty& property) {
         file_.warnings.push_back("the property '" + printable(property.name) + "' of the " + owner + " was dropped");
     }
 
     /// The texture coordinates of the face that was read last; a list of another length than two a corner counts as none.
-    void add_texture_coordinates(const std::vector<double>& values) {
-        const std::size_t degree = static_cast<std::size_t>(file_.mesh.degree(file_.mesh.face_count() - 1));
+    static void add_texture_coordinates(const std::vector<double>& values, FaceRows& rows) {
+        const std::size_t degree = static_cast<std::size_t>(rows.mesh.degree(rows.mesh.face_count() - 1));
         const bool fits = values.size() == 2 * degree;
-        faces_without_uvs_ += !fits;
-        for (std::size_t i = 0; i < degree; ++i) file_.uvs.corner_indices.push_back(fits ? static_cast<Index>(file_.uvs.values.size() / 2 + i) : -1);
-        if (fits) file_.uvs.values.insert(file_.uvs.values.end(), values.begin(), values.end());
+        rows.faces_without_uvs += !fits;
+        for (std::size_t i = 0; i < degree; ++i) rows.uvs.corner_indices.push_back(fits ? static_cast<Index>(rows.uvs.values.size() / 2 + i) : -1);
+        if (fits) rows.uvs.values.insert(rows.uvs.values.end(), values.begin(), values.end());
     }
 
     void finish_texture_coordinates() {
@@ -411,7 +376,7 @@ private:
     const InputBytes& input_;
     TextScanner scan_;
     MeshFile file_;
-    std::vector<Element> elements_;
+    std::vector<PlyElement> elements_;
     std::size_t faces_without_uvs_ = 0;
 };
 

@@ -21,20 +21,39 @@ class Welder {
 public:
     explicit Welder(std::vector<double>& positions) : positions_(positions), slots_(1024, -1) {}
 
-    Index vertex(const double point[3]) {
-        if (static_cast<std::size_t>(count_) * 2 >= slots_.size()) grow();
-        double normalised[3];
-        for (int i = 0; i < 3; ++i) normalised[i] = point[i] == 0 ? 0.0 : point[i];
-        std::size_t slot = hash(normalised);
-        for (; slots_[slot] >= 0; slot = (slot + 1) & (slots_.size() - 1))
-            if (std::memcmp(&positions_[3 * static_cast<std::size_t>(slots_[slot])], normalised, sizeof(normalised)) == 0) return slots_[slot];
-        positions_.insert(positions_.end(), normalised, normalised + 3);
-        return slots_[slot] = count_++;
+    /// Room for a closed mesh of so many triangles, which has half as many vertices; more grow it.
+    void expect(std::size_t triangles) {
+        while (slots_.size() < triangles) slots_.resize(2 * slots_.size(), -1);
+        positions_.reserve(3 * (triangles / 2 + 2));
+    }
+
+    static constexpr std::size_t batch = 48;
+
+    /// The vertices of up to `batch` points (x y z each, which become normalised). They are looked for together: all that may be needed of the table and of
+    /// the positions is fetched before the first is looked at, as each of them is a wait for memory.
+    void find(double* points, std::size_t count, Index* vertices) {
+        while ((static_cast<std::size_t>(count_) + count) * 2 >= slots_.size()) grow();
+        std::size_t hashes[batch];
+        for (std::size_t i = 0; i < count; ++i) {
+            for (std::size_t axis = 0; axis < 3; ++axis) points[3 * i + axis] += 0.0;  // -0 becomes 0
+            hashes[i] = hash(points + 3 * i);
+            __builtin_prefetch(&slots_[hashes[i]]);
+        }
+        for (std::size_t i = 0; i < count; ++i)
+            if (const Index vertex = slots_[hashes[i]]; vertex >= 0) __builtin_prefetch(&positions_[3 * static_cast<std::size_t>(vertex)]);
+        for (std::size_t i = 0; i < count; ++i) vertices[i] = vertex(points + 3 * i, hashes[i]);
     }
 
     Index count() const { return count_; }
 
 private:
+    Index vertex(const double* point, std::size_t slot) {
+        for (; slots_[slot] >= 0; slot = (slot + 1) & (slots_.size() - 1))
+            if (std::memcmp(&positions_[3 * static_cast<std::size_t>(slots_[slot])], point, 3 * sizeof(double)) == 0) return slots_[slot];
+        positions_.insert(positions_.end(), point, point + 3);
+        return slots_[slot] = count_++;
+    }
+
     std::size_t hash(const double* point) const {
         std::uint64_t bits[3];
         std::memcpy(bits, point, sizeof(bits));
@@ -107,21 +126,28 @@ private:
     void read_binary() {
         const std::size_t count = told_triangles();
         check_count(count);
-        file_.mesh.face_offsets.reserve(count + 1);
-        file_.mesh.face_vertices.reserve(3 * count);
+        welder_.expect(count);
+        file_.mesh.face_offsets.resize(count + 1);
+        file_.mesh.face_vertices.resize(3 * count);
         std::size_t coloured = 0;
         for (std::size_t f = 0; f < count; ++f) {
-            const char* facet = input_.data + head_size + facet_size * f;
-            for (std::size_t corner = 0; corner < 3; ++corner) {
-                float values[3];
-                std::memcpy(values, facet + 12 * (corner + 1), sizeof(values));
-                const double point[3] = {values[0], values[1], values[2]};
-                file_.mesh.face_vertices.push_back(welder_.vertex(point));
-            }
-            file_.mesh.face_offsets.push_back(static_cast<Index>(file_.mesh.face_vertices.size()));
-            coloured += facet[48] != 0 || facet[49] != 0;
+            file_.mesh.face_offsets[f + 1] = static_cast<Index>(3 * (f + 1));
+            const char* attributes = input_.data + head_size + facet_size * f + 48;
+            coloured += attributes[0] != 0 || attributes[1] != 0;
         }
+        constexpr std::size_t step = Welder::batch / 3;
+        for (std::size_t f = 0; f < count; f += step) weld(f, std::min(step, count - f));
         if (coloured > 0) file_.warnings.push_back("the attributes (colours) of " + std::to_string(coloured) + " triangles were dropped");
+    }
+
+    void weld(std::size_t first, std::size_t count) {
+        double points[3 * Welder::batch];
+        for (std::size_t i = 0; i < 3 * count; ++i) {
+            float values[3];
+            std::memcpy(values, input_.data + head_size + facet_size * (first + i / 3) + 12 * (i % 3 + 1), sizeof(values));
+            std::copy(values, values + 3, points + 3 * i);
+        }
+        welder_.find(points, 3 * count, &file_.mesh.face_vertices[3 * first]);
     }
 
     void check_count(std::size_t triangles) const {
@@ -165,7 +191,8 @@ private:
             value = scan.number("a coordinate");
         }
         check_count(file_.mesh.face_vertices.size() / 3);
-        file_.mesh.face_vertices.push_back(welder_.vertex(point));
+        file_.mesh.face_vertices.emplace_back();
+        welder_.find(point, 1, &file_.mesh.face_vertices.back());
     }
 
     /// Normals follow from the corners, and some programs write what is no number; they are not looked at.

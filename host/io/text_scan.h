@@ -110,8 +110,20 @@ public:
         return true;
     }
 
+    /// The number of one to nine digits that stands here as a word of its own, as most indices are; false, and nothing done, if there is something else.
+    bool take_short_number(Index& value) {
+        const char* at = at_;
+        Index digits = 0;
+        for (; at != end_ && *at >= '0' && *at <= '9' && at - at_ < 9; ++at) digits = 10 * digits + (*at - '0');
+        if (at == at_ || at == end_ || !is_delimiter(*at)) return false;
+        value = digits;
+        at_ = at;
+        return true;
+    }
+
     /// The whole number that stands here as a word of its own.
     std::int64_t integer(const char* what) {
+        if (Index short_value; take_short_number(short_value)) return short_value;
         const char* first = at_;
         std::int64_t value;
         if (!try_integer(value) || (at_ != end_ && !is_delimiter(*at_))) fail_number(first, what);
