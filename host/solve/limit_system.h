@@ -55,7 +55,7 @@ struct LimitSystem {
 std::unique_ptr<LimitSystem> make_limit_system(std::shared_ptr<Context> context, const PolygonMesh& mesh, const Topology& topology, const Features& features,
                                                const SchemeOptions& scheme, PlanOptions plan_options);
 
-/// Bounds and estimates lambda_min by a short Lanczos run on the device: some 20 passes at the first call.
+/// Bounds and estimates lambda_min by a short Lanczos run on the device: some 20 passes at the first call, over the weakest part alone of a large mesh.
 const Spectrum& spectrum_of(LimitSystem& system);
 
 /// 1/min(2 a_ii - 1) where the smooth rows are diagonally dominant, else the block Hager-Higham estimate (Higham & Tisseur 2000), some ten short solves at the
