@@ -445,13 +445,15 @@ TEST_CASE("launch shapes suit the kind of device", "[kernel]") {
     DeviceInfo device;
     device.max_work_group_size = 4096;
     device.cache_bytes = 1000000, device.compute_units = 4;
-    CHECK(launch_shape(device).group == 1);
-    CHECK((launch_shape(device).cache_bytes > 0 && launch_shape(device).cache_bytes < device.cache_bytes));
-    CHECK(launch_shape(device).phase_blocks >= 4);
+    CHECK(launch_shape(device, 1000000).group == 1);
+    CHECK((launch_shape(device, 1000000).cache_bytes > 0 && launch_shape(device, 1000000).cache_bytes < device.cache_bytes));
+    CHECK(launch_shape(device, 1000000).phase_blocks >= 4);
+    CHECK(launch_shape(device, 20000).block_rows <= 20000 / 4 / 4);
+    CHECK(launch_shape(device, 5).block_rows > 0);
     device.is_gpu = true;
-    CHECK(launch_shape(device).group == 128);
-    CHECK(launch_shape(device).cache_bytes == 0);
+    CHECK(launch_shape(device, 1000000).group == 128);
+    CHECK(launch_shape(device, 1000000).cache_bytes == 0);
     device.max_work_group_size = 64;
-    CHECK(launch_shape(device).group == 64);
-    CHECK(launch_shape(device).block_rows > 0);
+    CHECK(launch_shape(device, 1000000).group == 64);
+    CHECK(launch_shape(device, 1000000).block_rows > 0);
 }

@@ -14,6 +14,7 @@ namespace {
 
 constexpr int cpu_schedule_chunk = 256;  // rows of a Gauss-Seidel step that one work-item of a CPU takes
 constexpr Index phase_blocks_per_unit = 6;
+constexpr Index blocks_per_unit = 8;  // of a small mesh
 
 bool is_double(const Context& context, Real real) { return real == Real::full || (real == Real::wide && context.device().has_double); }
 
@@ -69,8 +70,11 @@ std::vector<lcl_run> device_runs(const Plan& plan) {
 
 }  // namespace
 
-LaunchShape launch_shape(const DeviceInfo& device) {
-    if (!device.is_gpu) return {1, 4096, device.cache_bytes / 4 * 3, phase_blocks_per_unit * static_cast<Index>(std::max(1u, device.compute_units))};
+LaunchShape launch_shape(const DeviceInfo& device, Index vertex_count) {
+    if (!device.is_gpu) {
+        const Index units = static_cast<Index>(std::max(1u, device.compute_units));
+        return {1, std::clamp<Index>(vertex_count / (blocks_per_unit * units), 256, 4096), device.cache_bytes / 4 * 3, phase_blocks_per_unit * units};
+    }
     int group = 128;
     while (group > 1 && static_cast<std::size_t>(group) > device.max_work_group_size) group /= 2;
     return {group, 1024, 0, 1};

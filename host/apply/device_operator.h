@@ -20,7 +20,8 @@ struct LaunchShape {
     std::size_t cache_bytes = 0;  ///< what the sweeps of a chain that follow each other may fill with rows; 0: they do not
     Index phase_blocks = 1;       ///< blocks that a phase of a chain has at least, so that all compute units are busy to its end
 };
-LaunchShape launch_shape(const DeviceInfo& device);
+/// For a mesh of so many vertices: small ones are cut finer, so that all compute units have blocks.
+LaunchShape launch_shape(const DeviceInfo& device, Index vertex_count);
 
 /// y = a x + (b + b_jacobi / A_ii) (m - A x) + c d.
 struct Sweep {

@@ -43,7 +43,7 @@ std::unique_ptr<LimitSystem> make_limit_system(std::shared_ptr<Context> context,
                                                const SchemeOptions& scheme, PlanOptions plan_options) {
     const Objection objection = scheme_objection(topology, scheme);
     if (!objection.message.empty()) throw BadInput(objection.message, {objection.vertices, objection.faces});
-    const LaunchShape shape = launch_shape(context->device());
+    const LaunchShape shape = launch_shape(context->device(), mesh.vertex_count);
     plan_options.block_rows = shape.block_rows;
     auto system = std::make_unique<LimitSystem>();
     system->scheme = scheme;
