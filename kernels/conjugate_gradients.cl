@@ -38,7 +38,7 @@ __kernel __attribute__((reqd_work_group_size(LCL_GROUP, 1, 1))) void lcl_cg_upda
         const realn residual = r[row] - alpha * q[row];
         r[row] = residual;
         sum += LCL_TO_SUM(scaling[row] * residual * residual);
-        const real square = dot(residual, residual);
+        const real square = lcl_square(residual);
         worst = LCL_LARGER(worst, square);
     }
     LCL_GROUP_STORE_SUM(sum, sum_scratch, sums, first_block + get_group_id(0));

@@ -8,6 +8,20 @@
 /// The larger one; a not-a-number stays, so that divergence is seen.
 #define LCL_LARGER(worst, value) (((value) > (worst) || (value) != (value)) ? (value) : (worst))
 
+/// Largest of many squares by their bits, which are in the numbers' order, with not-a-numbers above all: one integer maximum.
+#define LCL_IS_double 1
+#define LCL_IS(type) LCL_JOIN(LCL_IS_, type)
+#if LCL_IS(LCL_REAL)
+typedef ulong square_bits;
+#define LCL_SQUARE_BITS(square) as_ulong(fabs(square))
+#define LCL_SQUARE(bits) as_double(bits)
+#else
+typedef uint square_bits;
+#define LCL_SQUARE_BITS(square) as_uint(fabs(square))
+#define LCL_SQUARE(bits) as_float(bits)
+#endif
+#define LCL_LARGER_SQUARE(worst, square) max(worst, LCL_SQUARE_BITS(square))
+
 #if LCL_GROUP == 1
 #define LCL_SCRATCH(type, name)
 #define LCL_GROUP_STORE_MAX(value, scratch, out, place) out[place] = (value)

@@ -3,15 +3,14 @@
 // Jacobi (b_jacobi = 1; two-phase paper, eq. 6), Chebyshev in three terms (d = the field before x), residual (a = 0, b = 1).
 //
 // One work-group owns one block of rows and writes one norm; x and y differ, so a sweep never reads what it writes. d may be y: each row of d is read before that row of y is written.
-// A float sweep leaves a residual of some 1e-7 of the field's size.
+// The result does not depend on scheduling. A float sweep leaves a residual of some 1e-7 of the field's size.
 #include "reduce.cl.h"
 #include "rows.cl.h"
 
 #define LCL_RELAX_PLUS(row, ax, own, third_term)                                            \
     {                                                                                       \
         const realn residual = m[row] - (ax);                                               \
-        const real square = dot(residual, residual);                                        \
-        worst = LCL_LARGER(worst, square);                                                  \
+        worst = LCL_LARGER_SQUARE(worst, lcl_square(residual));                          \
         y[row] = a * x[row] + (b + b_jacobi * lcl_inverse(own)) * residual third_term;      \
     }
 #define LCL_RELAX(row, ax, own) LCL_RELAX_PLUS(row, ax, own, )
@@ -24,9 +23,9 @@ __kernel __attribute__((reqd_work_group_size(LCL_GROUP, 1, 1))) void lcl_relax(c
     LCL_SCRATCH(real, scratch)
     const int lane = get_local_id(0);
     const lcl_block block = blocks[first_block + get_group_id(0)];
-    real worst = 0;
+    square_bits worst = 0;
     LCL_FOR_EACH_ROW(block, x, LCL_RELAX)
-    LCL_GROUP_STORE_MAX(worst, scratch, norms, first_block + get_group_id(0));
+    LCL_GROUP_STORE_MAX(LCL_SQUARE(worst), scratch, norms, first_block + get_group_id(0));
 }
 
 /// The same with + c d; d: n x LCL_WIDTH, read; it may be y.
@@ -36,7 +35,30 @@ __kernel __attribute__((reqd_work_group_size(LCL_GROUP, 1, 1))) void lcl_relax_t
     LCL_SCRATCH(real, scratch)
     const int lane = get_local_id(0);
     const lcl_block block = blocks[first_block + get_group_id(0)];
-    real worst = 0;
+    square_bits worst = 0;
     LCL_FOR_EACH_ROW(block, x, LCL_RELAX_THREE_TERM)
-    LCL_GROUP_STORE_MAX(worst, scratch, norms, first_block + get_group_id(0));
+    LCL_GROUP_STORE_MAX(LCL_SQUARE(worst), scratch, norms, first_block + get_group_id(0));
+}
+
+/// One phase of a chain of sweeps that follow each other through the blocks, so that rows are still in cache when the next sweep takes them (level-based blocking of matrix powers: Alappat
+/// et al. 2022). Sweep s reads `even` (s even) or `odd` and writes the other one, whose old rows are its d. In phase t it takes the blocks from t * width - s * lag on, `width` of them,
+/// where they exist. With a lag of the blocks that rows reach plus 2 * width, all that it reads was finished two phases before, and all that it overwrites had its last reader then.
+/// Work-group g: sweep first_sweep + g / width, block g % width of these. chain: coefficients by sweep. norms: norm_stride a sweep, at the block's number.
+__kernel __attribute__((reqd_work_group_size(LCL_GROUP, 1, 1))) void lcl_relax_phase(const int phase, const int first_sweep, const int width, const int lag, const int first_block,
+                                                                                    const int block_count, const int norm_stride, LCL_STENCILS, const lcl_chain chain,
+                                                                                    const __global realn *restrict m, __global realn *even, __global realn *odd,
+                                                                                    __global real *restrict norms) {
+    LCL_SCRATCH(real, scratch)
+    const int lane = get_local_id(0);
+    const int sweep = first_sweep + (int)get_group_id(0) / width;
+    const int index = phase * width - sweep * lag + (int)get_group_id(0) % width;
+    if (index < 0 || index >= block_count) return;
+    const lcl_block block = blocks[first_block + index];
+    const real a = chain.value[4 * sweep], b = chain.value[4 * sweep + 1], b_jacobi = chain.value[4 * sweep + 2], c = chain.value[4 * sweep + 3];
+    const __global realn *x = sweep % 2 == 0 ? even : odd;
+    __global realn *y = sweep % 2 == 0 ? odd : even;
+    const __global realn *d = y;
+    square_bits worst = 0;
+    LCL_FOR_EACH_ROW(block, x, LCL_RELAX_THREE_TERM)
+    LCL_GROUP_STORE_MAX(LCL_SQUARE(worst), scratch, norms, sweep * norm_stride + first_block + index);
 }

@@ -4,8 +4,8 @@
 #include "reduce.cl.h"
 #include "rows.cl.h"
 
-/// first_block: block of work-group 0. m, x: n x LCL_WIDTH wide rows, read. r: n x LCL_WIDTH floats, rows of the blocks written. norms: largest squared row norm of each block.
-__kernel __attribute__((reqd_work_group_size(LCL_GROUP, 1, 1))) void lcl_residual(const int first_block, LCL_STENCILS, const __global realn *restrict m, const __global realn *restrict x,
+/// first_block: block of work-group 0. m, x: n x LCL_WIDTH wide rows (LCL_FLOAT_FIELDS: floats), read. r: n x LCL_WIDTH floats, rows of the blocks written. norms: largest squared row norm of each block.
+__kernel __attribute__((reqd_work_group_size(LCL_GROUP, 1, 1))) void lcl_residual(const int first_block, LCL_STENCILS, const __global fieldn *restrict m, const __global fieldn *restrict x,
                                                                                  __global floatn *restrict r, __global float *restrict norms) {
     LCL_SCRATCH(float, scratch)
     const int lane = get_local_id(0);
@@ -13,8 +13,8 @@ __kernel __attribute__((reqd_work_group_size(LCL_GROUP, 1, 1))) void lcl_residua
     float worst = 0;
 #define LCL_RESIDUAL(row, ax, own)                                            \
     {                                                                         \
-        const floatn residual = lcl_narrow(lcl_add(m[row], lcl_minus(ax)));   \
-        const float square = dot(residual, residual);                         \
+        const floatn residual = lcl_narrow(lcl_add(LCL_ROW(m[row]), lcl_minus(ax)));   \
+        const float square = lcl_square_of_floats(residual);                         \
         worst = LCL_LARGER(worst, square);                                    \
         r[row] = residual;                                                    \
     }
@@ -22,16 +22,9 @@ __kernel __attribute__((reqd_work_group_size(LCL_GROUP, 1, 1))) void lcl_residua
     LCL_GROUP_STORE_MAX(worst, scratch, norms, first_block + get_group_id(0));
 }
 
-/// first, count: rows. d: n x LCL_WIDTH floats, read. x: n x LCL_WIDTH wide rows, x += d in place.
+/// first, count: rows. d: n x LCL_WIDTH floats, read. x: n x LCL_WIDTH rows, x += d in place.
 __kernel void lcl_correct(const int first, const int count, const __global floatn *restrict d, __global realn *restrict x) {
     const int i = get_global_id(0);
     if (i >= count) return;
     x[first + i] = lcl_add(x[first + i], lcl_widen(d[first + i]));
-}
-
-/// first, count: rows. x: n x LCL_WIDTH wide rows, read. y: n x LCL_WIDTH floats, written.
-__kernel void lcl_narrow_rows(const int first, const int count, const __global realn *restrict x, __global floatn *restrict y) {
-    const int i = get_global_id(0);
-    if (i >= count) return;
-    y[first + i] = lcl_narrow(x[first + i]);
 }

@@ -8,7 +8,7 @@
 //
 // LCL_REAL    element of the device's rows: float (default) or double
 // LCL_SOURCE  element of the caller's array: float (default) or double
-// LCL_WIDTH   components of a row: 1, 2 or 4 (default)
+// LCL_WIDTH   components of a row: 1, 2, 4 (default) or 8
 // Arithmetic is double if either element is (the device must have cl_khr_fp64 then), else float.
 #ifndef LCL_REAL
 #define LCL_REAL float

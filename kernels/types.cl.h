@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Types shared by the kernels and, for the structs, by the host, which includes this file as C++.
 //
-// Build options: LCL_REAL float (default) or double; LCL_WIDTH channels in a row of a field, 1, 2 or 4 (default); LCL_GROUP work-items that sweep one block together, 1 (default, best on
-// CPUs) or a power of two (GPUs); LCL_HAS_DOUBLE where the device has double precision; LCL_PAIR: rows are pairs of floats, 48 bits, for devices that have none.
+// Build options: LCL_REAL float (default) or double; LCL_WIDTH channels in a row of a field, 1, 2, 4 (default) or 8; LCL_GROUP work-items that sweep one block together, 1 (default, best on
+// CPUs) or a power of two (GPUs); LCL_HAS_DOUBLE where the device has double precision; LCL_PAIR: rows are pairs of floats, 48 bits, for devices that have none;
+// LCL_FLOAT_FIELDS: fields are floats although LCL_REAL (or LCL_PAIR) is wider.
 #ifndef LCL_TYPES_CL_H
 #define LCL_TYPES_CL_H
 
@@ -16,6 +17,9 @@ typedef struct {
 typedef struct {
     int first_run, run_count, first_row, row_count;
 } lcl_block;
+
+/// Sweeps that one chain holds at most.
+#define LCL_CHAIN 16
 
 #define LCL_SHAPE_IDENTITY 0   /* A x = x */
 #define LCL_SHAPE_RING 1       /* vertex and edge ends */
@@ -47,6 +51,9 @@ typedef struct {
 
 typedef LCL_VECTOR(float) floatn;
 typedef LCL_REAL real; /* norms */
+
+/// Coefficients of the sweeps of a chain: a, b, b_jacobi, c each.
+typedef struct { real value[4 * LCL_CHAIN]; } lcl_chain;
 
 #ifdef LCL_HAS_DOUBLE
 typedef LCL_VECTOR(double) sumn; /* sums over many rows */
@@ -109,6 +116,26 @@ inline floatn lcl_narrow(realn a) { return LCL_JOIN(convert_float, LCL_WIDTH)(a)
 #endif
 
 #endif /* LCL_PAIR */
+
+/* Squared Euclidean norm of a row; OpenCL's dot ends at four components. */
+#if LCL_WIDTH == 8
+#define LCL_SQUARE_OF(a) (dot((a).lo, (a).lo) + dot((a).hi, (a).hi))
+#else
+#define LCL_SQUARE_OF(a) dot(a, a)
+#endif
+inline float lcl_square_of_floats(floatn a) { return LCL_SQUARE_OF(a); }
+#ifndef LCL_PAIR
+inline real lcl_square(realn a) { return LCL_SQUARE_OF(a); }
+#endif
+
+/* Rows of fields: of the sums' own type, or floats of which wide sums are made. */
+#ifdef LCL_FLOAT_FIELDS
+typedef floatn fieldn;
+#define LCL_ROW(row) lcl_widen(row)
+#else
+typedef realn fieldn;
+#define LCL_ROW(row) (row)
+#endif
 
 #endif /* __cplusplus */
 #endif

@@ -209,7 +209,8 @@ TEST_CASE("PIA by single sweeps is PIA", "[capi][field][solve]") {
         if (i < sweeps) std::swap(x, y);
     }
     for (int i = 0; i <= sweeps; ++i)
-        CHECK(residuals[i] == Approx(history[i]).epsilon(4 * eps));  // the same kernels on the same numbers, but for the way back to model units
+        CHECK(std::abs(residuals[i] - history[i]) <= 4 * eps * history[i] + (precision == LCL_PRECISION_DOUBLE ? 0 : 4 * float_eps * diagonal_of(shape)));
+    // but for the way back to model units the same numbers; in float a solve works on corrections, which are rounded less
     CHECK(largest_difference(download(x.get(), shape.mesh.vertex_count), P) <=
           (precision == LCL_PRECISION_DOUBLE ? 4 * eps : 4 * float_eps) * diagonal_of(shape));  // corners come back to the bit from a solve alone
 }

@@ -4,6 +4,7 @@
 
 #include <catch2/catch.hpp>
 
+#include "host/field/host_rows.h"
 #include "tests/solver_support.h"
 
 using namespace lcl;
@@ -33,20 +34,21 @@ double round_trip_error(const std::shared_ptr<Context>& context, Index rows, int
 
 }  // namespace
 
-TEST_CASE("the position has a block of its own, further channels follow in fours", "[channels]") {
-    for (int channels = 1; channels <= 12; ++channels) {
+TEST_CASE("the position has a block of its own, further channels follow in eights", "[channels]") {
+    for (int channels = 1; channels <= 21; ++channels) {
         INFO(channels);
         const auto blocks = channel_blocks(channels);
         int next = 0;
         for (std::size_t b = 0; b < blocks.size(); ++b) {
             CHECK(blocks[b].first == next);
-            CHECK(blocks[b].count == std::min(channels - next, b == 0 ? 3 : 4));
-            CHECK(blocks[b].width == (blocks[b].count == 3 ? 4 : blocks[b].count));
+            CHECK(blocks[b].count == std::min(channels - next, b == 0 ? 3 : 8));
+            CHECK((blocks[b].width == 1 || blocks[b].width == 2 || blocks[b].width == 4 || blocks[b].width == 8));
+            CHECK((blocks[b].width >= blocks[b].count && blocks[b].width < 2 * blocks[b].count));
             next += blocks[b].count;
         }
         CHECK(next == channels);
     }
-    CHECK(channel_blocks(9).size() == 3);  // 3, 4, 2
+    CHECK(channel_blocks(13).size() == 3);  // 3, 8, 2
 }
 
 TEST_CASE("positions share one scale, every further channel has its own, isolated vertices do not count", "[channels]") {
@@ -99,6 +101,109 @@ TEST_CASE("values that cannot be scaled are refused", "[channels][refused]") {
         values[6] = -1.7e308;
         CHECK_THROWS_AS(fit_transform(plan, values.data(), 1, 1), BadInput);
     }
+}
+
+TEST_CASE("ranges are those of a plain loop, isolated vertices left out, for every type, stride and number of channels", "[channels][large]") {
+    const Prepared mesh(shapes::with_isolated_vertex(shapes::shuffled(shapes::torus_quads(200, 180), 3), 777));
+    for (const bool with_isolated : {false, true}) {
+        Plan plan = mesh.plan(catmull_clark());
+        if (!with_isolated) plan.isolated_count = 0;
+        for (const int channels : {1, 2, 3, 4, 5, 8}) {
+            CAPTURE(channels, with_isolated);
+            const std::size_t stride = channels + 2;
+            std::vector<double> values = numbers(plan.vertex_count * stride);
+            values[777 * stride] = -50;
+            const std::vector<float> floats(values.begin(), values.end());
+            for (const bool is_float : {false, true}) {
+                const HostRows rows{is_float ? static_cast<const void*>(floats.data()) : values.data(), stride, is_float};
+                const ValueRanges ranges = value_ranges(plan, rows, channels);
+                CHECK(ranges.are_finite);
+                for (int c = 0; c < channels; ++c) {
+                    double low = HUGE_VAL, high = -HUGE_VAL;
+                    for (Index v = 0; v < plan.vertex_count; ++v) {
+                        if (with_isolated && v == 777) continue;
+                        const double value = is_float ? floats[v * stride + c] : values[v * stride + c];
+                        low = std::min(low, value), high = std::max(high, value);
+                    }
+                    CHECK(ranges.low[c] == low);
+                    CHECK(ranges.high[c] == high);
+                }
+            }
+            for (const Index v : {0, 777, plan.vertex_count - 1}) {
+                std::vector<double> bad = values;
+                bad[v * stride + channels - 1] = v == 0 ? HUGE_VAL : std::nan("");
+                CHECK(!value_ranges(plan, {bad.data(), stride}, channels).are_finite);
+                bad = values;
+                bad[v * stride + channels] = HUGE_VAL;  // between the rows
+                CHECK(value_ranges(plan, {bad.data(), stride}, channels).are_finite);
+            }
+        }
+    }
+}
+
+TEST_CASE("rows go from and to a caller's memory as by way of the plan's order", "[channels][field][large]") {
+    const Prepared mesh(shapes::with_isolated_vertex(shapes::shuffled(shapes::torus_quads(200, 180), 3), 777));
+    const Plan plan = mesh.plan(catmull_clark());
+    for (const int channels : {1, 2, 3, 4, 7})
+        for (const bool is_float : {false, true}) {
+            CAPTURE(channels, is_float);
+            const std::size_t stride = channels + 1, count = plan.vertex_count * stride;
+            std::vector<double> values = numbers(count);
+            values[777 * stride] = 1e300;
+            if (is_float) values[777 * stride] = 1e38;
+            const std::vector<float> floats(values.begin(), values.end());
+            if (is_float) values.assign(floats.begin(), floats.end());
+            const Transform transform = fit_transform(plan, values.data(), stride, channels);
+            const HostRows rows{is_float ? static_cast<const void*>(floats.data()) : values.data(), stride, is_float};
+            for (const auto& [context, real] : {std::pair(device_context(), Real::single), std::pair(context_without_double(), Real::wide)}) {
+                Field direct(context, plan.vertex_count, channels, real), plain(context, plan.vertex_count, channels, real);
+                upload_rows(plan, transform, rows, direct);
+                plain.upload(to_plan_order(plan, transform, values.data(), stride, channels).data(), 0, plan.vertex_count);
+                std::vector<double> a(plan.vertex_count * static_cast<std::size_t>(channels)), b = a;
+                direct.download(a.data(), 0, plan.vertex_count);
+                plain.download(b.data(), 0, plan.vertex_count);
+                CHECK(a == b);
+                std::vector<double> back(count, -3), plain_back(count, -3);
+                std::vector<float> float_back(count, -3);
+                from_plan_order(plan, transform, a, channels, plain_back.data(), stride);
+                download_rows(plan, transform, direct, {is_float ? static_cast<void*>(float_back.data()) : back.data(), stride, is_float});
+                if (is_float) CHECK(float_back == std::vector<float>(plain_back.begin(), plain_back.end()));
+                else CHECK(back == plain_back);
+            }
+        }
+}
+
+TEST_CASE("mapped and staged transfers carry the same bytes", "[channels][field]") {
+    for (const auto& [first, count] : {std::pair(0, 300001), std::pair(1234, 131073), std::pair(9, 0)})
+        for (const auto write : {Field::Way::mapped, Field::Way::staged})
+            for (const auto read : {Field::Way::mapped, Field::Way::staged}) {
+                CAPTURE(first, count, static_cast<int>(write), static_cast<int>(read));
+                Field field(device_context(), 300001, 5, Real::single);
+                field.fill_zero();
+                const auto value = [](std::size_t block, std::size_t row, int c) { return static_cast<float>(block * 1000003 + row * 4 + c); };
+                const auto width = [&](std::size_t block) { return field.blocks()[block].width; };
+                field.write(
+                    first, count,
+                    [&](std::size_t block, std::size_t begin, std::size_t rows, void* out) {
+                        for (std::size_t i = 0; i < rows; ++i)
+                            for (int c = 0; c < width(block); ++c) static_cast<float*>(out)[i * width(block) + c] = value(block, first + begin + i, c);
+                    },
+                    write);
+                std::size_t wrong = 0, seen = 0;
+                field.read(
+                    0, 300001,
+                    [&](std::size_t block, std::size_t begin, std::size_t rows, const void* in) {
+                        seen += rows;
+                        for (std::size_t row = begin; row < begin + rows; ++row)
+                            for (int c = 0; c < width(block); ++c) {
+                                const bool is_written = row >= static_cast<std::size_t>(first) && row < static_cast<std::size_t>(first + count);
+                                wrong += static_cast<const float*>(in)[(row - begin) * width(block) + c] != (is_written ? value(block, row, c) : 0.0f);
+                            }
+                    },
+                    read);
+                CHECK(wrong == 0);
+                CHECK(seen == 2 * 300001);
+            }
 }
 
 TEST_CASE("fields hold floats, doubles or pairs, in every number of channels", "[channels][field]") {

@@ -186,3 +186,28 @@ TEST_CASE("offsets that do not fit the corners are refused, not followed", "[mes
     CHECK_FALSE(find_defects(mesh).empty());
     CHECK_THROWS_AS(build_topology(mesh), BadInput);
 }
+
+TEST_CASE("faces without area are found by their area against their extent, whatever the size of the model", "[mesh][defects][large]") {
+    // Thin triangles: half the height over the width against 1e-14. Two in three have area; all others are listed, on all cores.
+    for (const double size : {1e-170, 1e-60, 1.0, 1e60, 1e140}) {
+        CAPTURE(size);
+        std::vector<shapes::Point> points;
+        std::vector<shapes::Face> faces;
+        Index flat = 0;
+        const double heights[] = {1e-15, 1.9e-14, 2.1e-14, 1e-13, 1e-12, 0.5};
+        for (int i = 0; i < 40000; ++i) {
+            const double height = heights[i % 6];
+            flat += height / 2 < 1e-14;
+            const int first = static_cast<int>(points.size());
+            points.insert(points.end(), {{0, 0, 0}, {size, 0, 0}, {0, height * size, 0}});
+            faces.push_back({first, first + 1, first + 2});
+        }
+        const auto shape = shapes::make("slivers", points, faces);
+        for (const auto& defects : {find_defects(shape.mesh), find_defects_of_sound_mesh(shape.mesh)}) {
+            REQUIRE(defects.size() == 1);
+            CHECK(defects[0].kind == DefectKind::zero_area);
+            CHECK(defects[0].count == flat);
+            CHECK(defects[0].where.faces == std::vector<Index>{0, 1, 6, 7, 12, 13, 18, 19, 24, 25});
+        }
+    }
+}

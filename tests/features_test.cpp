@@ -34,7 +34,7 @@ TEST_CASE("a closed mesh without features is smooth", "[mesh][features]") {
         CHECK(std::count(features.edge_is_sharp.begin(), features.edge_is_sharp.end(), 1) == 0);
         CHECK(features.crease_count == 0);
         CHECK(features.corner_count == 0);
-        CHECK(features.curve_neighbours == std::vector<Pair>(shape.mesh.vertex_count, Pair{-1, -1}));
+        CHECK(features.curve_neighbours.empty());
     }
 }
 
@@ -59,7 +59,7 @@ TEST_CASE("curve neighbours at a boundary are E_0 and E_k in face order", "[mesh
     // 0 -- 1 -- 2
     const auto mesh = shapes::make("two quads", {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {0, 1, 0}, {1, 1, 0}, {2, 1, 0}}, {{0, 1, 4, 3}, {1, 2, 5, 4}}).mesh;
     const Features features = features_of(mesh, with_boundary(BoundaryRule::edge_only));
-    CHECK(features.curve_neighbours == std::vector<Pair>{{1, 3}, {2, 0}, {5, 1}, {0, 4}, {3, 5}, {4, 2}});
+    CHECK(features.curve_neighbours == Array<Pair>{{1, 3}, {2, 0}, {5, 1}, {0, 4}, {3, 5}, {4, 2}});
 }
 
 TEST_CASE("sharp edges make darts, curve vertices and corners", "[mesh][features]") {

@@ -19,6 +19,7 @@ using Values = std::vector<double>;
 struct Launching {
     int group;
     Index block_rows;
+    std::size_t cache_bytes = 0;
 };
 
 struct Case {
@@ -31,7 +32,7 @@ struct Case {
 class KernelCheck {
 public:
     KernelCheck(std::shared_ptr<Context> context, const Case& c, const Launching& launching, int channels, Real real)
-        : plan_(make_plan(c, launching)), A_(std::move(context), plan_, launching.group), channels_(channels), real_(real), block_rows_(launching.block_rows) {
+        : plan_(make_plan(c, launching)), A_(std::move(context), plan_, launch_shape_of(launching)), channels_(channels), real_(real), launching_(launching) {
         const bool wide = real == Real::full || (real == Real::wide && A_.context().device().has_double);
         unit_ = std::ldexp(1, real == Real::single ? -24 : wide ? -53 : -46);
         for (Index row = 0; row < plan_->row_count; ++row) {
@@ -45,9 +46,10 @@ public:
     /// Every kernel that runs on this type.
     void check_all() {
         check_limit_points();
-        if (real_ == Real::wide) return check_wide_residual(), check_correct_and_narrow();
+        if (real_ == Real::wide) return check_wide_residual(), check_residual_of_floats(), check_correct();
         check_relax();
         check_relax_three_term();
+        check_chain();
         check_relax_rows(natural_schedule(*plan_));
         check_relax_rows(coloured_schedule(*plan_));
         check_conjugate_gradients();
@@ -117,7 +119,7 @@ public:
         double total = 0;
         for (Index row = part.first_row; row < part.end_row(); ++row) total += plan_->scaling[row];
         // Products are rounded in the field's type; sums in double, or without it in float, a block at a time.
-        const double sum_tolerance = 4 * (row_tolerance() + (A_.context().device().has_double ? 0 : block_rows_ * unit_)) * total;
+        const double sum_tolerance = 4 * (row_tolerance() + (A_.context().device().has_double ? 0 : launching_.block_rows * unit_)) * total;
         const ChannelValues factor = factors();
         Field p = field(x_), q = field(d_), x = field(m_), r = field(d_);
         check_sums(A_.cg_apply(p, q, part), x_, ax_, sum_tolerance);
@@ -170,19 +172,50 @@ public:
         CHECK(std::abs(found.others - plain.others) <= 3 * tolerance + 4e-7 * plain.others);
     }
 
-    void check_correct_and_narrow() {
-        Field x = field(x_), d = A_.make_field(channels_, Real::single), y = A_.make_field(channels_, Real::single);
+    /// The same on fields of floats.
+    void check_residual_of_floats() {
+        Field m = A_.make_field(channels_, Real::single), x = A_.make_field(channels_, Real::single), r = A_.make_field(channels_, Real::single);
+        m.upload(m_.data(), 0, plan_->vertex_count);
+        x.upload(x_.data(), 0, plan_->vertex_count);
+        r.fill_zero();
+        const Values float_m = download(m), a_x = apply(download(x));
+        Values residual(float_m.size());
+        for (std::size_t i = 0; i < residual.size(); ++i) residual[i] = float_m[i] - a_x[i];
+        A_.wide_residual(m, x, r, all());
+        CHECK(difference(download(r), with_rows(Values(residual.size(), 0.0), residual, all())) <= row_tolerance() + std::ldexp(1, -22));
+    }
+
+    /// Three sweeps in one go are three sweeps one after the other.
+    void check_chain() {
+        const std::vector<Sweep> sweeps{{0.75, 1.25, 0.25, -0.5}, {0.5, 0.75, 0, 0.25}, {1, 0.5, 0, -0.25}};
+        if (launching_.cache_bytes > 0) CHECK(A_.phases(sweeps.size(), field(x_), plan_->smooth).width < plan_->smooth.block_count);
+        for (const Part& part : {all(), plan_->smooth}) {
+            const Field m = field(m_);
+            Field x = field(x_), y = field(d_), plain_x = field(x_), plain_y = field(d_);
+            const std::vector<ResidualNorms> norms = A_.chain(sweeps, m, x, y, part);
+            REQUIRE(norms.size() == sweeps.size());
+            for (std::size_t s = 0; s < sweeps.size(); ++s, std::swap(plain_x, plain_y)) {
+                A_.sweep(sweeps[s], m, plain_x, &plain_y, plain_y, part);
+                const ResidualNorms plain = A_.norms(plain_x, part);
+                CHECK(std::abs(norms[s].position - plain.position) <= 32 * row_tolerance());
+                CHECK(std::abs(norms[s].others - plain.others) <= 32 * row_tolerance());
+            }
+            CHECK(difference(download(x), download(plain_x)) <= 32 * row_tolerance());
+        }
+    }
+
+    void check_correct() {
+        Field x = field(x_), d = A_.make_field(channels_, Real::single);
         d.upload(d_.data(), 0, plan_->vertex_count);
         const Values correction = download(d);
         A_.correct(d, x, plan_->smooth);
         Values expected_x = x_;
         for (std::size_t i = at(plan_->smooth.first_row, 0); i < at(plan_->smooth.end_row(), 0); ++i) expected_x[i] += correction[i];
         CHECK(difference(download(x), expected_x) <= 4 * unit_);
-        A_.narrow(x, y);
-        CHECK(difference(download(y), expected_x) <= 2 * std::ldexp(1, -24));
     }
 
 private:
+    static LaunchShape launch_shape_of(const Launching& launching) { return {launching.group, launching.block_rows, launching.cache_bytes, 1}; }
     static std::shared_ptr<const Plan> make_plan(const Case& c, const Launching& launching) {
         PlanOptions options;
         options.block_rows = launching.block_rows;
@@ -275,7 +308,7 @@ private:
     }
     ResidualNorms norms_of(const Values& residual) const { return norms_of(residual, all()); }
 
-    /// Norms that the last launch left, against those of m - A x, or of -m where the residual itself is given. Further channels are measured four together.
+    /// Norms that the last launch left, against those of m - A x, or of -m where the residual itself is given. Further channels are measured eight together.
     void check_norms(const Field& like, const Values& m, double tolerance) { check_norms(like, m, tolerance, all(), false); }
     void check_norms(const Field& like, const Values& m, double tolerance, const Part& part, bool is_residual) {
         Values residual(m.size());
@@ -304,7 +337,7 @@ private:
     DeviceOperator A_;
     int channels_;
     Real real_;
-    Index block_rows_;
+    Launching launching_;
     double unit_ = 0;
     std::vector<LimitRow> entries_;
     std::size_t longest_ = 1;
@@ -354,9 +387,9 @@ TEST_CASE("kernels equal plain loops in the shape of a GPU, a work-group a block
     for (const Case& c : small_cases()) check(device_context(), c, {64, 150}, 3, Real::single);
 }
 
-TEST_CASE("kernels equal plain loops with 1 to 9 channels", "[kernel][channels]") {
+TEST_CASE("kernels equal plain loops with 1 to 17 channels", "[kernel][channels]") {
     const Case c{"creases and darts", shapes::grid_with_creases(), catmull_clark(0.3), {}, {}};
-    for (int channels = 1; channels <= 9; ++channels)
+    for (const int channels : {1, 2, 3, 4, 5, 6, 7, 8, 9, 11, 12, 17})
         for (const Real real : reals()) check(device_context(), c, {1, 20}, channels, real);
     check(device_context(), c, {16, 20}, 1, Real::single);
     check(device_context(), c, {16, 20}, 9, reals().back());
@@ -376,6 +409,7 @@ TEST_CASE("kernels equal plain loops on 100 000 rows", "[kernel]") {
         check(device_context(), c, {1, 8192}, 3, Real::single);
         check(device_context(), c, {16, 1024}, 3, Real::single);
         check(device_context(), c, {1, 8192}, 3, Real::wide);
+        for (const int channels : {3, 5}) check(device_context(), c, {1, 512, 2000000}, channels, Real::single);  // sweeps that follow each other
     }
 }
 
@@ -392,7 +426,7 @@ TEST_CASE("results are the same bits in every run and for every shape of launch"
         PlanOptions options;
         options.block_rows = 64;
         const auto plan = std::make_shared<const Plan>(mesh.plan(loop(), options));
-        DeviceOperator A(device_context(), plan, group);
+        DeviceOperator A(device_context(), plan, {group, 64, 0, 1});
         const Eigen::MatrixXd values = rough_values(3, mesh.vertex_count(), 9);
         Field x = A.make_field(3, Real::single), y = A.make_field(3, Real::single);
         x.upload(values.data(), 0, plan->vertex_count);
@@ -410,9 +444,13 @@ TEST_CASE("results are the same bits in every run and for every shape of launch"
 TEST_CASE("launch shapes suit the kind of device", "[kernel]") {
     DeviceInfo device;
     device.max_work_group_size = 4096;
+    device.cache_bytes = 1000000, device.compute_units = 4;
     CHECK(launch_shape(device).group == 1);
+    CHECK((launch_shape(device).cache_bytes > 0 && launch_shape(device).cache_bytes < device.cache_bytes));
+    CHECK(launch_shape(device).phase_blocks >= 4);
     device.is_gpu = true;
     CHECK(launch_shape(device).group == 128);
+    CHECK(launch_shape(device).cache_bytes == 0);
     device.max_work_group_size = 64;
     CHECK(launch_shape(device).group == 64);
     CHECK(launch_shape(device).block_rows > 0);

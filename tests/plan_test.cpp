@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The plan: the operator's rows in their fast order, as plain arrays.
+#include <algorithm>
 #include <cmath>
+#include <map>
 #include <set>
 
 #include <catch2/catch.hpp>
 
 #include "host/apply/host_operator.h"
+#include "host/operator/excerpt.h"
 #include "host/operator/ordering.h"
 #include "tests/solver_support.h"
 
@@ -198,19 +201,111 @@ TEST_CASE("ghosts come last, without rows, and the owned rows are those of the w
     }
 }
 
-TEST_CASE("the Morton order is a permutation that keeps neighbours together, and equal positions in order", "[plan][ordering]") {
-    const auto mesh = shapes::shuffled(shapes::grid_quads(40, 40), 2).mesh;
-    const std::vector<Index> order = morton_order(mesh.positions, mesh.vertex_count);
-    CHECK(std::set<Index>(order.begin(), order.end()).size() == static_cast<std::size_t>(mesh.vertex_count));
-    double along = 0;
-    for (std::size_t i = 1; i < order.size(); ++i) {
-        double square = 0;
-        for (int c = 0; c < 3; ++c) square += std::pow(mesh.positions[3 * order[i] + c] - mesh.positions[3 * order[i - 1] + c], 2);
-        along += std::sqrt(square);
+TEST_CASE("the breadth-first order is a permutation in which faces span two levels at most, isolated vertices last", "[plan][ordering]") {
+    const auto shape = shapes::with_isolated_vertex(shapes::shuffled(shapes::grid_quads(40, 30), 2), 5);
+    const Topology topology = build_topology(shape.mesh);
+    const Array<Index> order = breadth_first_order(topology, shape.mesh.positions);
+    REQUIRE(std::set<Index>(order.begin(), order.end()).size() == static_cast<std::size_t>(shape.mesh.vertex_count));
+    CHECK(order.back() == 5);
+    std::vector<Index> place(order.size());
+    for (std::size_t i = 0; i < order.size(); ++i) place[order[i]] = static_cast<Index>(i);
+    Index span = 0;
+    for (Index f = 0; f < topology.face_count; ++f)
+        for (Index c = topology.face_offsets[f]; c < topology.face_offsets[f + 1]; ++c)
+            span = std::max(span, std::abs(place[topology.face_vertices[c]] - place[topology.face_vertices[topology.face_offsets[f]]]));
+    CHECK(span <= 2 * (40 + 1 + 30 + 1));  // levels from a side of the grid hold at most one row and one column
+    CHECK(breadth_first_order(Topology{}, {}).empty());
+}
+
+TEST_CASE("a plan's reach bounds how many blocks the smooth rows of a block look away", "[plan][ordering]") {
+    for (const auto& shape : {shapes::torus_quads(40, 30), shapes::polygons_mixed(900, 5), shapes::grid_with_creases()}) {
+        const Prepared mesh(shape);
+        PlanOptions options;
+        options.block_rows = 16;
+        const Plan plan = mesh.plan(catmull_clark(), options);
+        const auto block_of = [&](Index row) { return (row - plan.smooth.first_row) / options.block_rows; };
+        Index reach = 0;
+        for (Index row = plan.smooth.first_row; row < plan.smooth.end_row(); ++row)
+            for (const Index column : plan_row(plan, run_of_row(plan, row), row).columns)
+                if (column >= plan.smooth.first_row && column < plan.smooth.end_row()) reach = std::max(reach, std::abs(block_of(row) - block_of(column)));
+        CHECK(plan.reach == reach);
     }
-    CHECK(along / static_cast<double>(order.size()) < 3 * 0.05);  // the edges are 0.05 long; in the shuffled order steps are of length 1
-    CHECK(morton_order(std::vector<double>(30, 7.5), 10) == std::vector<Index>{0, 1, 2, 3, 4, 5, 6, 7, 8, 9});
-    CHECK(morton_order({}, 0).empty());
+}
+
+TEST_CASE("an excerpt is a principal submatrix, round the weakest rows", "[plan]") {
+    const Prepared mesh(shapes::polygons_mixed(900, 5));
+    PlanOptions options;
+    options.block_rows = 16;
+    const Plan plan = mesh.plan(catmull_clark(), options);
+    const Part part = weakest_blocks(plan, 100);
+    REQUIRE(part.row_count >= 100);
+    REQUIRE(part.row_count < plan.smooth.row_count);
+    const Plan some = excerpt(plan, part.first_block, part.block_count);
+    REQUIRE(some.row_count == part.row_count);
+    for (Index row = 0; row < some.row_count; ++row) {
+        std::map<Index, double> expected, found;
+        const LimitRow whole = plan_row(plan, run_of_row(plan, row + part.first_row), row + part.first_row), cut = plan_row(some, run_of_row(some, row), row);
+        for (std::size_t i = 0; i < whole.columns.size(); ++i)
+            if (whole.columns[i] >= part.first_row && whole.columns[i] < part.end_row()) expected[whole.columns[i] - part.first_row] += whole.weights[i];
+        for (std::size_t i = 0; i < cut.columns.size(); ++i)
+            if (cut.columns[i] < some.row_count) found[cut.columns[i]] += cut.weights[i];
+        CHECK(found == expected);
+    }
+    CHECK(weakest_blocks(plan, plan.smooth.row_count).row_count == plan.smooth.row_count);
+}
+
+TEST_CASE("a large plan equals a plain one: parts and shapes by stable sorts, rows one by one", "[plan][large]") {
+    auto creased = shapes::shuffled(shapes::grid_quads(220, 200), 7);
+    creased.features.corners = {5, 40000};
+    const shapes::Shape large[] = {shapes::shuffled(shapes::torus_quads(230, 200), 6), creased, shapes::shuffled(shapes::polygons_mixed(36000, 8), 9),
+                                   shapes::combined(shapes::torus_triangles(200, 180), shapes::disk_pole_triangles(500))};
+    for (const auto& shape : large)
+        for (const auto& scheme : {catmull_clark(), catmull_clark(0.2, 0.3), doo_sabin()}) {
+            INFO(shape.name << ", " << scheme_name(scheme.scheme));
+            const Prepared mesh(shape);
+            const Plan plan = mesh.plan(scheme);
+            check_permutation(plan);
+            check_cover(plan, PlanOptions{}.block_rows);
+            check_runs(plan);
+            const std::vector<std::uint8_t> all;
+            LimitRows rows(mesh.topology, mesh.features, scheme, all, all);
+            std::vector<RowClass> classes;
+            for (Index v = 0; v < plan.vertex_count; ++v) classes.push_back(rows.classify(v));
+            const Array<Index> breadth_first = breadth_first_order(mesh.topology, shape.mesh.positions);
+            std::vector<Index> order(breadth_first.begin(), breadth_first.end());
+            std::stable_sort(order.begin(), order.end(), [&](Index a, Index b) { return classes[a].kind < classes[b].kind; });
+            for (const Block& block : plan.blocks)
+                std::stable_sort(order.begin() + block.first_row, order.begin() + block.first_row + block.row_count, [&](Index a, Index b) {
+                    return std::pair(classes[a].shape, classes[a].edges) < std::pair(classes[b].shape, classes[b].edges);
+                });
+            CHECK(std::equal(order.begin(), order.end(), plan.vertex_of_row.begin()));
+            double worst = 0;
+            for (const Run& run : plan.runs)
+                for (Index row = run.first; row < run.first + run.count; ++row) {
+                    std::map<Index, double> difference;
+                    const LimitRow stored = plan_row(plan, run, row), plain = rows.row(order[row]);
+                    for (std::size_t i = 0; i < stored.columns.size(); ++i) difference[plan.vertex_of_row[stored.columns[i]]] += stored.weights[i];
+                    for (std::size_t i = 0; i < plain.columns.size(); ++i) difference[plain.columns[i]] -= plain.weights[i];
+                    for (const auto& [column, value] : difference) worst = std::max(worst, std::abs(value));
+                    for (std::size_t i = 0; i < plain.columns.size(); ++i)
+                        if (plain.columns[i] == order[row]) worst = std::max(worst, std::abs(plain.weights[i] - plan.diagonal[row]));
+                }
+            CHECK(worst < tolerance);
+        }
+}
+
+TEST_CASE("poles of any valence stand in runs of their own", "[plan]") {
+    auto shape = shapes::disk_pole_triangles(64);
+    for (const int n : {100, 63, 62, 100, 64, 65, 200}) shape = shapes::combined(shape, shapes::disk_pole_triangles(n));
+    const Prepared mesh(shape);
+    const Plan plan = mesh.plan(loop());
+    check_permutation(plan);
+    check_cover(plan, 8192);
+    check_runs(plan);
+    std::vector<int> valences;
+    for (const Run& run : plan.runs)
+        if (run.first >= plan.smooth.first_row) valences.insert(valences.end(), run.count, run.edges);
+    CHECK(valences == std::vector<int>{62, 63, 64, 64, 65, 100, 100, 200});
 }
 
 TEST_CASE("the host operator applies the plan's rows, whatever the channels and blocks", "[plan][apply]") {

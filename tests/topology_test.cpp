@@ -2,6 +2,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <functional>
+#include <map>
 #include <set>
 
 #include <catch2/catch.hpp>
@@ -33,7 +35,147 @@ PolygonMesh torus(int m, int n) {
     return shapes::make("torus", points, faces).mesh;
 }
 
+/// Meshes that all cores share: of quads, of triangles with a boundary, of polygons, with isolated vertices, and poles of few and of many faces.
+std::vector<shapes::Shape> large_shapes() {
+    return {shapes::torus_quads(300, 200),
+            shapes::shuffled(shapes::torus_triangles(250, 150), 1),
+            shapes::shuffled(shapes::grid_triangles(200, 190), 2),
+            shapes::with_isolated_vertex(shapes::with_isolated_vertex(shapes::grid_quads(210, 200), 0), 30000),
+            shapes::shuffled(shapes::polygons_mixed(36000, 3), 4),
+            shapes::combined(shapes::disk_pole_triangles(20000), shapes::disk_pole_quads(9)),
+            shapes::combined(shapes::torus_quads(200, 170), shapes::disk_pole_quads(70))};
+}
+
+/// Twins by looking each half-edge up in the other direction.
+std::vector<Index> plain_twins(const PolygonMesh& mesh) {
+    std::map<std::pair<Index, Index>, Index> from_to;
+    std::vector<std::pair<Index, Index>> ends;
+    for (Index f = 0; f < mesh.face_count(); ++f)
+        for (Index k = 0; k < mesh.degree(f); ++k) {
+            const Index *corners = &mesh.face_vertices[mesh.face_offsets[f]], next = (k + 1) % mesh.degree(f);
+            from_to[{corners[k], corners[next]}] = static_cast<Index>(ends.size());
+            ends.emplace_back(corners[k], corners[next]);
+        }
+    std::vector<Index> twins;
+    for (const auto& [a, b] : ends) {
+        const auto found = from_to.find({b, a});
+        twins.push_back(found == from_to.end() ? -1 : found->second);
+    }
+    return twins;
+}
+
+template <class Numbers>
+std::vector<Index> list(const Numbers& numbers) {
+    return {numbers.begin(), numbers.end()};
+}
+
 }  // namespace
+
+TEST_CASE("the topology that all cores build equals a plain construction", "[mesh][topology][large]") {
+    for (const auto& shape : large_shapes()) {
+        CAPTURE(shape.name);
+        const Topology topology = build_topology(shape.mesh);
+        const std::vector<Index> twins = plain_twins(shape.mesh);
+        REQUIRE(list(topology.twin) == twins);
+        CHECK(topology.boundary_edge_count == std::count(twins.begin(), twins.end(), -1));
+        std::vector<Index> first(shape.mesh.vertex_count, -1), faces(shape.mesh.vertex_count, 0), edge(twins.size()), edge_half_edge;
+        for (Index h = 0; h < static_cast<Index>(twins.size()); ++h) {
+            Index& chosen = first[shape.mesh.face_vertices[h]];
+            if (chosen < 0 || twins[h] < 0) chosen = h;
+            ++faces[shape.mesh.face_vertices[h]];
+            edge[h] = twins[h] >= 0 && twins[h] < h ? edge[twins[h]] : static_cast<Index>(edge_half_edge.size());
+            if (edge[h] == static_cast<Index>(edge_half_edge.size())) edge_half_edge.push_back(h);
+        }
+        CHECK(list(topology.vertex_half_edge) == first);
+        CHECK(list(topology.vertex_face_count) == faces);
+        CHECK(list(topology.half_edge_edge) == edge);
+        CHECK(list(topology.edge_half_edge) == edge_half_edge);
+        CHECK(list(topology.face_vertices) == shape.mesh.face_vertices);
+        CHECK(list(topology.face_offsets) == shape.mesh.face_offsets);
+    }
+}
+
+TEST_CASE("a vertex's fan is what rotating gives", "[mesh][topology][large]") {
+    std::vector<shapes::Shape> all = shapes::all_shapes(), large = large_shapes();
+    all.insert(all.end(), large.begin(), large.end());
+    for (const auto& shape : all) {
+        CAPTURE(shape.name);
+        const Topology topology = build_topology(shape.mesh);
+        std::vector<Index> walked, offsets{0};
+        for (Index v = 0; v < topology.vertex_count; ++v) {
+            Index h = topology.vertex_half_edge[v];
+            for (Index i = 0; i < topology.vertex_face_count[v]; ++i, h = topology.rotate(h)) walked.push_back(h);
+            offsets.push_back(static_cast<Index>(walked.size()));
+        }
+        CHECK(list(topology.fan_half_edges) == walked);
+        CHECK(list(topology.fan_offsets) == offsets);
+    }
+}
+
+TEST_CASE("all faces' degree is known where it is one", "[mesh][topology]") {
+    CHECK(build_topology(shapes::torus_quads(4, 5).mesh).uniform_degree == 4);
+    CHECK(build_topology(shapes::grid_triangles(3, 3).mesh).uniform_degree == 3);
+    CHECK(build_topology(shapes::dodecahedron().mesh).uniform_degree == 5);
+    CHECK(build_topology(shapes::triangular_prism().mesh).uniform_degree == 0);
+}
+
+TEST_CASE("one bad place is found anywhere in a large mesh", "[mesh][topology][large][refused]") {
+    const PolygonMesh sound = shapes::torus_quads(300, 200).mesh;
+    for (const Index f : {Index{0}, Index{29999}, Index{30000}, Index{59999}}) {
+        CAPTURE(f);
+        struct Damage {
+            DefectKind kind;
+            std::function<void(PolygonMesh&)> make;
+        };
+        const auto corners = [&](PolygonMesh& mesh) { return &mesh.face_vertices[4 * f]; };
+        const auto add_face = [](PolygonMesh& mesh, std::initializer_list<Index> face) {
+            mesh.face_vertices.insert(mesh.face_vertices.end(), face);
+            mesh.face_offsets.push_back(static_cast<Index>(mesh.face_vertices.size()));
+        };
+        const Damage damages[] = {
+            {DefectKind::index_range, [&](PolygonMesh& mesh) { corners(mesh)[2] = mesh.vertex_count; }},
+            {DefectKind::index_range, [&](PolygonMesh& mesh) { corners(mesh)[1] = -1; }},
+            {DefectKind::repeated_vertex, [&](PolygonMesh& mesh) { corners(mesh)[3] = corners(mesh)[1]; }},
+            {DefectKind::not_finite, [&](PolygonMesh& mesh) { mesh.positions[3 * f + 2] = std::nan(""); }},
+            {DefectKind::orientation, [&](PolygonMesh& mesh) { std::reverse(corners(mesh), corners(mesh) + 4); }},
+            {DefectKind::edge_with_three_faces,
+             [&](PolygonMesh& mesh) {
+                 mesh.vertex_count += 1;
+                 mesh.positions.insert(mesh.positions.end(), {0, 0, 0});
+                 add_face(mesh, {corners(mesh)[0], corners(mesh)[1], mesh.vertex_count - 1});
+             }},
+            {DefectKind::non_manifold_vertex,
+             [&](PolygonMesh& mesh) {
+                 mesh.vertex_count += 2;
+                 mesh.positions.insert(mesh.positions.end(), 6, 0.0);
+                 add_face(mesh, {corners(mesh)[0], mesh.vertex_count - 2, mesh.vertex_count - 1});
+             }},
+        };
+        for (const Damage& damage : damages) {
+            PolygonMesh mesh = sound;
+            damage.make(mesh);
+            const std::vector<Defect> defects = find_defects(mesh);
+            REQUIRE(!defects.empty());
+            CHECK(defects[0].kind == damage.kind);
+            CHECK_THROWS_WITH(build_topology(mesh), defects[0].message);
+            CHECK(!topology_if_sound(mesh));
+        }
+    }
+}
+
+TEST_CASE("two fans of many faces at one vertex are refused, however their half-edges are numbered", "[mesh][topology][refused]") {
+    for (const int faces : {1, 3, 4, 9, 100}) {
+        std::vector<shapes::Face> both;
+        for (int fan = 0; fan < 2; ++fan)
+            for (int i = 0; i < faces; ++i) {
+                const int first = 1 + fan * (faces + 1) + i;
+                both.push_back({0, first, first + 1});
+            }
+        const auto shape = shapes::make("two fans", std::vector<shapes::Point>(2 * faces + 3), both);
+        CAPTURE(faces);
+        for (const int seed : {0, 1, 2}) CHECK(find_defects(shapes::shuffled(shape, seed).mesh).front().kind == DefectKind::non_manifold_vertex);
+    }
+}
 
 TEST_CASE("two quads side by side have the half-edges worked out by hand", "[mesh][topology]") {
     // 3 -- 4 -- 5     half-edges 0: 0-1, 1: 1-4, 2: 4-3, 3: 3-0
@@ -42,12 +184,12 @@ TEST_CASE("two quads side by side have the half-edges worked out by hand", "[mes
     const auto mesh = shapes::make("two quads", {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {0, 1, 0}, {1, 1, 0}, {2, 1, 0}}, {{0, 1, 4, 3}, {1, 2, 5, 4}}).mesh;
     const Topology topology = build_topology(mesh);
     CHECK(topology.edge_count == 7);
-    CHECK(topology.twin == std::vector<Index>{-1, 7, -1, -1, -1, -1, -1, 1});
-    CHECK(topology.half_edge_edge == std::vector<Index>{0, 1, 2, 3, 4, 5, 6, 1});
-    CHECK(topology.edge_half_edge == std::vector<Index>{0, 1, 2, 3, 4, 5, 6});
-    CHECK(topology.half_edge_face == std::vector<Index>{0, 0, 0, 0, 1, 1, 1, 1});
-    CHECK(topology.vertex_half_edge == std::vector<Index>{0, 4, 5, 3, 2, 6});
-    CHECK(topology.vertex_face_count == std::vector<Index>{1, 2, 1, 1, 2, 1});
+    CHECK(topology.twin == Array<Index>{-1, 7, -1, -1, -1, -1, -1, 1});
+    CHECK(topology.half_edge_edge == Array<Index>{0, 1, 2, 3, 4, 5, 6, 1});
+    CHECK(topology.edge_half_edge == Array<Index>{0, 1, 2, 3, 4, 5, 6});
+    CHECK(topology.half_edge_face == Array<Index>{0, 0, 0, 0, 1, 1, 1, 1});
+    CHECK(topology.vertex_half_edge == Array<Index>{0, 4, 5, 3, 2, 6});
+    CHECK(topology.vertex_face_count == Array<Index>{1, 2, 1, 1, 2, 1});
     CHECK(topology.rotate(4) == 1);
     CHECK(topology.rotate(1) == -1);
     CHECK(topology.valence(1) == 3);
@@ -150,6 +292,7 @@ TEST_CASE("components are numbered by their smallest vertex and isolated vertice
 TEST_CASE("the bounding box counts only vertices that a face uses", "[mesh][topology]") {
     auto shape = shapes::make("a triangle and a far vertex", {{0, 0, 0}, {3, 0, 0}, {3, 4, 12}, {1000, 0, 0}}, {{0, 1, 2}});
     CHECK(bounding_box_diagonal(shape.mesh) == Approx(13).epsilon(1e-15));
+    CHECK(bounding_box_diagonal(shape.mesh, build_topology(shape.mesh)) == bounding_box_diagonal(shape.mesh));
     CHECK(bounding_box_diagonal(shapes::no_faces().mesh) == 0);
 }
 
@@ -157,8 +300,8 @@ TEST_CASE("small closed surfaces whose faces meet in several edges are connected
     SECTION("two triangles back to back") {
         const Topology topology = build_topology(shapes::make("pillow", {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}, {2, 1, 0}}).mesh);
         CHECK(topology.edge_count == 3);
-        CHECK(topology.twin == std::vector<Index>{4, 3, 5, 1, 0, 2});
-        CHECK(topology.vertex_face_count == std::vector<Index>{2, 2, 2});
+        CHECK(topology.twin == Array<Index>{4, 3, 5, 1, 0, 2});
+        CHECK(topology.vertex_face_count == Array<Index>{2, 2, 2});
     }
     SECTION("a torus of 3 by 3 quads") {
         const Topology topology = build_topology(torus(3, 3));

@@ -4,30 +4,36 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <optional>
 
+#include "host/parallel.h"
 #include "kernels/types.cl.h"
 
 namespace lcl {
 namespace {
 
 constexpr int cpu_schedule_chunk = 256;  // rows of a Gauss-Seidel step that one work-item of a CPU takes
+constexpr Index phase_blocks_per_unit = 6;
 
 bool is_double(const Context& context, Real real) { return real == Real::full || (real == Real::wide && context.device().has_double); }
 
-/// A scalar, or a row of them, in a kernel's own type, by value.
+/// A scalar, a row of them, or the coefficients of a chain, in a kernel's own type, by value.
 struct RealValue {
-    std::array<unsigned char, 4 * sizeof(double)> bytes{};
+    std::array<unsigned char, 4 * LCL_CHAIN * sizeof(double)> bytes;
     std::size_t size = 0;
+    void append(bool as_double, std::initializer_list<double> values) {
+        for (const double value : values) {
+            const float narrow = static_cast<float>(value);
+            const std::size_t count = as_double ? sizeof value : sizeof narrow;
+            std::memcpy(bytes.data() + size, as_double ? static_cast<const void*>(&value) : &narrow, count);
+            size += count;
+        }
+    }
 };
 
 RealValue real_value(bool as_double, std::initializer_list<double> values) {
     RealValue out;
-    for (const double value : values) {
-        const float narrow = static_cast<float>(value);
-        const std::size_t bytes = as_double ? sizeof value : sizeof narrow;
-        std::memcpy(out.bytes.data() + out.size, as_double ? static_cast<const void*>(&value) : &narrow, bytes);
-        out.size += bytes;
-    }
+    out.append(as_double, values);
     return out;
 }
 
@@ -36,7 +42,18 @@ RealValue row_value(bool as_double, const ChannelBlock& block, const ChannelValu
     const auto at = [&](int i) { return i < block.count ? values[block.first + i] : 0.0; };
     if (block.width == 1) return real_value(as_double, {at(0)});
     if (block.width == 2) return real_value(as_double, {at(0), at(1)});
-    return real_value(as_double, {at(0), at(1), at(2), at(3)});
+    RealValue row = real_value(as_double, {at(0), at(1), at(2), at(3)});
+    if (block.width == 8) row.append(as_double, {at(4), at(5), at(6), at(7)});
+    return row;
+}
+
+/// What a kernel has written.
+double real_at(const unsigned char* place, bool as_double) {
+    float narrow;
+    double value;
+    if (as_double) std::memcpy(&value, place, sizeof value);
+    else std::memcpy(&narrow, place, sizeof narrow), value = narrow;
+    return value;
 }
 
 void set_argument(cl_kernel kernel, unsigned place, const RealValue& value) { set_argument_bytes(kernel, place, value.bytes.data(), value.size); }
@@ -53,20 +70,20 @@ std::vector<lcl_run> device_runs(const Plan& plan) {
 }  // namespace
 
 LaunchShape launch_shape(const DeviceInfo& device) {
-    if (!device.is_gpu) return {1, 8192};
+    if (!device.is_gpu) return {1, 4096, device.cache_bytes / 4 * 3, phase_blocks_per_unit * static_cast<Index>(std::max(1u, device.compute_units))};
     int group = 128;
     while (group > 1 && static_cast<std::size_t>(group) > device.max_work_group_size) group /= 2;
-    return {group, 1024};
+    return {group, 1024, 0, 1};
 }
 
-DeviceOperator::DeviceOperator(std::shared_ptr<Context> context, std::shared_ptr<const Plan> plan, int group)
-    : context_(std::move(context)), plan_(std::move(plan)), group_(group) {
+DeviceOperator::DeviceOperator(std::shared_ptr<Context> context, std::shared_ptr<const Plan> plan, const LaunchShape& shape)
+    : context_(std::move(context)), plan_(std::move(plan)), shape_(shape) {
     static_assert(sizeof(lcl_block) == sizeof(Block));
     const std::vector<lcl_run> runs = device_runs(*plan_);
     const auto upload_all = [&](const auto& values, const char* what) { return upload(values.data(), values.size() * sizeof values[0], what); };
     blocks_ = upload_all(plan_->blocks, "the blocks of a limit operator");
     runs_ = upload_all(runs, "the runs of a limit operator");
-    indices_ = upload_all(plan_->indices, "the limit stencils' neighbours");
+    indices_ = upload_doubled(plan_->indices, "the limit stencils' neighbours");
     weighted_offsets_ = upload_all(plan_->weighted_offsets, "the offsets of weighted limit stencils");
     weighted_indices_ = upload_all(plan_->weighted_indices, "the columns of weighted limit stencils");
 }
@@ -76,6 +93,15 @@ Buffer DeviceOperator::upload(const void* data, std::size_t bytes, const char* w
     // Not on the kernels' queue, where it would wait for what a caller has put there; nothing uses a new buffer yet.
     if (bytes > 0) context_->write_async(buffer, 0, bytes, data, {}, std::string("uploading ") + what).wait();
     return buffer;
+}
+
+/// Kernels take row numbers doubled (rows.cl.h).
+Buffer DeviceOperator::upload_doubled(const Array<Index>& rows, const char* what) {
+    Array<std::uint32_t> doubled(rows.size());
+    parallel_for(rows.size(), [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) doubled[i] = 2 * static_cast<std::uint32_t>(rows[i]);
+    });
+    return upload(doubled.data(), doubled.size() * sizeof doubled[0], what);
 }
 
 Buffer DeviceOperator::upload_reals(const std::vector<double>& values, Real real, const char* what) {
@@ -113,17 +139,17 @@ DeviceOperator::Partials& DeviceOperator::partials(const Field& field) {
     Partials& partials = partials_[{field.real(), field.channels()}];
     const std::size_t count = std::max<std::size_t>(1, plan_->blocks.size());
     for (std::size_t b = partials.norms.size(); b < field.blocks().size(); ++b) {
-        partials.norms.emplace_back(context_, count * sizeof(double), "norms of blocks");
+        partials.norms.emplace_back(context_, LCL_CHAIN * count * sizeof(double), "norms of blocks");
         partials.sums.emplace_back(context_, count * field.blocks()[b].width * sizeof(double), "sums of blocks");
     }
     return partials;
 }
 
 cl_kernel DeviceOperator::kernel(const char* file, const char* name, const Field& field, std::size_t block) {
-    return context_->kernel(file, name, kernel_options(*context_, field.real(), field.blocks()[block].width, group_));
+    return context_->kernel(file, name, kernel_options(*context_, field.real(), field.blocks()[block].width, shape_.group));
 }
 
-LaunchSize DeviceOperator::size(const Part& part) const { return {static_cast<std::size_t>(part.block_count) * group_, static_cast<std::size_t>(group_)}; }
+LaunchSize DeviceOperator::size(const Part& part) const { return {static_cast<std::size_t>(part.block_count) * shape_.group, static_cast<std::size_t>(shape_.group)}; }
 
 void DeviceOperator::limit_points(const Field& x, Field& y, const Part& part) {
     for (std::size_t b = 0; b < x.blocks().size(); ++b)
@@ -148,21 +174,82 @@ void DeviceOperator::sweep(const Sweep& s, const Field& m, const Field& x, const
     }
 }
 
+// The rows of all sweeps of a phase have to stay in cache: each sweep's own blocks and those up to the next one's.
+DeviceOperator::Phases DeviceOperator::phases(std::size_t sweeps, const Field& field, const Part& part) const {
+    const Index all = std::max(1, part.block_count);
+    const Phases one_by_one{all, all, std::min<Index>(static_cast<Index>(sweeps), LCL_CHAIN)};
+    const bool is_smooth = part.first_block == plan_->smooth.first_block && part.block_count == plan_->smooth.block_count;
+    if (!is_smooth || part.row_count == 0) return one_by_one;
+    const std::size_t row_bytes = 3 * field.row_bytes(0) + sizeof(Index) * plan_->indices.size() / part.row_count;
+    if (row_bytes * part.row_count <= shape_.cache_bytes) return one_by_one;  // all of it stays in cache
+    for (Index depth = one_by_one.sweeps; depth > 1; --depth) {
+        const Index width = (shape_.phase_blocks + depth - 1) / depth, lag = plan_->reach + 2 * width;
+        const std::size_t rows = static_cast<std::size_t>(depth) * lag * shape_.block_rows;
+        if (rows * row_bytes <= shape_.cache_bytes && rows < static_cast<std::size_t>(part.row_count)) return {width, lag, depth};
+    }
+    return one_by_one;
+}
+
+std::vector<ResidualNorms> DeviceOperator::chain(const std::vector<Sweep>& sweeps, const Field& m, Field& x, Field& y, const Part& part) {
+    std::vector<ResidualNorms> norms;
+    while (norms.size() < sweeps.size()) {
+        Phases some = phases(sweeps.size() - norms.size(), x, part);
+        run_phases(some, sweeps.data() + norms.size(), m, x, y, part);
+        const std::vector<ResidualNorms> theirs = norms_of_sweeps(x, part, some.sweeps);
+        norms.insert(norms.end(), theirs.begin(), theirs.end());
+        if (some.sweeps % 2 == 1) std::swap(x, y);
+    }
+    return norms;
+}
+
+void DeviceOperator::run_phases(const Phases& phases, const Sweep* sweeps, const Field& m, Field& x, Field& y, const Part& part) {
+    const bool as_double = is_double(*context_, x.real());
+    RealValue chain;
+    for (Index s = 0; s < LCL_CHAIN; ++s) {
+        const Sweep sweep = s < phases.sweeps ? sweeps[s] : Sweep{};
+        chain.append(as_double, {sweep.a, sweep.b, sweep.b_jacobi, sweep.c});
+    }
+    const auto stride = static_cast<Index>(plan_->blocks.size());
+    for (std::size_t k = 0; k < x.blocks().size(); ++k) {
+        const cl_kernel relax = kernel("relax", "lcl_relax_phase", x, k);
+        set_arguments(relax, 0, 0, phases.width, phases.lag, part.first_block, part.block_count, stride, blocks_, runs_, weights(x.real(), false), indices_,
+                      weighted_offsets_, weighted_indices_, weights(x.real(), true), chain, m.buffer(k), x.buffer(k), y.buffer(k), partials(x).norms[k]);
+        enqueue_phases(phases, part, relax);
+    }
+}
+
+void DeviceOperator::enqueue_phases(const Phases& phases, const Part& part, cl_kernel relax) {
+    std::optional<Pipeline> pipeline;
+    if (phases.lag > phases.width) pipeline.emplace(*context_);
+    const Index last_phase = (part.block_count - 1 + (phases.sweeps - 1) * phases.lag) / phases.width;
+    for (Index phase = 0; phase <= last_phase; ++phase) {
+        // sweeps with a block in [phase * width - s * lag, + width)
+        const Index over = phase * phases.width - (part.block_count - 1);
+        const Index first = over > 0 ? (over + phases.lag - 1) / phases.lag : 0;
+        const Index last = std::min(phases.sweeps - 1, (phase * phases.width + phases.width - 1) / phases.lag);
+        const std::size_t groups = static_cast<std::size_t>(std::max(0, last - first + 1)) * phases.width;
+        const LaunchSize size{groups * shape_.group, static_cast<std::size_t>(shape_.group)};
+        set_argument(relax, 0, phase);
+        set_argument(relax, 1, first);
+        if (pipeline) pipeline->enqueue(relax, size);
+        else enqueue(*context_, relax, size);
+    }
+    if (pipeline) pipeline->join();
+}
+
 void DeviceOperator::wide_residual(const Field& m, const Field& x, Field& r, const Part& part) {
-    for (std::size_t b = 0; b < x.blocks().size(); ++b)
-        launch(*context_, kernel("residual", "lcl_residual", x, b), size(part), part.first_block, blocks_, runs_, weights(x.real(), false), indices_,
-               weighted_offsets_, weighted_indices_, weights(x.real(), true), m.buffer(b), x.buffer(b), r.buffer(b), partials(r).norms[b]);
+    const char* const fields = x.real() == Real::single ? " -D LCL_FLOAT_FIELDS" : "";
+    for (std::size_t b = 0; b < x.blocks().size(); ++b) {
+        const std::string options = kernel_options(*context_, Real::wide, x.blocks()[b].width, shape_.group) + fields;
+        launch(*context_, context_->kernel("residual", "lcl_residual", options), size(part), part.first_block, blocks_, runs_, weights(Real::wide, false),
+               indices_, weighted_offsets_, weighted_indices_, weights(Real::wide, true), m.buffer(b), x.buffer(b), r.buffer(b), partials(r).norms[b]);
+    }
 }
 
 void DeviceOperator::correct(const Field& d, Field& x, const Part& part) {
     for (std::size_t b = 0; b < x.blocks().size(); ++b)
         launch(*context_, kernel("residual", "lcl_correct", x, b), {static_cast<std::size_t>(part.row_count), 0}, part.first_row, part.row_count, d.buffer(b),
                x.buffer(b));
-}
-
-void DeviceOperator::narrow(const Field& x, Field& y) {
-    for (std::size_t b = 0; b < x.blocks().size(); ++b)
-        launch(*context_, kernel("residual", "lcl_narrow_rows", x, b), {static_cast<std::size_t>(x.rows()), 0}, Index{0}, x.rows(), x.buffer(b), y.buffer(b));
 }
 
 DeviceOperator::ScheduleArrays& DeviceOperator::schedule_arrays(const Schedule& schedule, Real real) {
@@ -178,33 +265,34 @@ DeviceOperator::ScheduleArrays& DeviceOperator::schedule_arrays(const Schedule& 
 
 void DeviceOperator::relax_rows(const Schedule& schedule, const Field& m, Field& x) {
     const ScheduleArrays& arrays = schedule_arrays(schedule, x.real());
-    const int chunk = group_ == 1 ? cpu_schedule_chunk : 1;
+    const int chunk = shape_.group == 1 ? cpu_schedule_chunk : 1;
     for (std::size_t step = 0; step + 1 < schedule.step_offsets.size(); ++step) {
         const Index first = schedule.step_offsets[step], count = schedule.step_offsets[step + 1] - first;
-        const std::size_t items = (count + chunk - 1) / chunk, local = static_cast<std::size_t>(group_);
+        const std::size_t items = (count + chunk - 1) / chunk, local = static_cast<std::size_t>(shape_.group);
         for (std::size_t b = 0; b < x.blocks().size(); ++b)
             launch(*context_, kernel("gauss_seidel", "lcl_relax_rows", x, b), {(items + local - 1) / local * local, local}, first, count, chunk, arrays.rows,
                    arrays.offsets, arrays.columns, arrays.weights, arrays.inverse_diagonal, m.buffer(b), x.buffer(b));
     }
 }
 
-ResidualNorms DeviceOperator::norms(const Field& like, const Part& part) {
-    ResidualNorms worst;
+ResidualNorms DeviceOperator::norms(const Field& like, const Part& part) { return norms_of_sweeps(like, part, 1).front(); }
+
+std::vector<ResidualNorms> DeviceOperator::norms_of_sweeps(const Field& like, const Part& part, std::size_t sweeps) {
+    std::vector<ResidualNorms> worst(sweeps);
     const bool as_double = is_double(*context_, like.real());
-    const std::size_t bytes = as_double ? sizeof(double) : sizeof(float);
-    std::vector<unsigned char> raw(part.block_count * bytes);
-    for (std::size_t b = 0; b < like.blocks().size(); ++b) {
-        if (!raw.empty()) context_->read(partials(like).norms[b], part.first_block * bytes, raw.size(), raw.data(), "reading residual norms");
-        double square = 0;
-        for (Index i = 0; i < part.block_count; ++i) {
-            float narrow;
-            double value;
-            if (as_double) std::memcpy(&value, raw.data() + i * bytes, bytes);
-            else std::memcpy(&narrow, raw.data() + i * bytes, bytes), value = narrow;
-            if (!(value <= square)) square = value;  // keeps a not-a-number
+    const std::size_t bytes = as_double ? sizeof(double) : sizeof(float), stride = plan_->blocks.size();
+    std::vector<unsigned char> raw(((sweeps - 1) * stride + part.block_count) * bytes);
+    for (std::size_t b = 0; b < like.blocks().size() && part.block_count > 0; ++b) {
+        context_->read(partials(like).norms[b], part.first_block * bytes, raw.size(), raw.data(), "reading residual norms");
+        for (std::size_t s = 0; s < sweeps; ++s) {
+            double square = 0;
+            for (Index i = 0; i < part.block_count; ++i) {
+                const double value = real_at(raw.data() + (s * stride + i) * bytes, as_double);
+                if (!(value <= square)) square = value;  // keeps a not-a-number
+            }
+            double& norm = b == 0 ? worst[s].position : worst[s].others;
+            if (!(std::sqrt(square) <= norm)) norm = std::sqrt(square);
         }
-        double& norm = b == 0 ? worst.position : worst.others;
-        if (!(std::sqrt(square) <= norm)) norm = std::sqrt(square);
     }
     return worst;
 }
@@ -220,12 +308,7 @@ ChannelValues DeviceOperator::sums(const Field& field, const Part& part) {
             context_->read(partials(field).sums[b], static_cast<std::size_t>(part.first_block) * block.width * bytes, raw.size(), raw.data(), "reading sums");
         for (Index i = 0; i < part.block_count; ++i)
             for (int c = 0; c < block.count; ++c) {
-                float narrow;
-                double value;
-                const unsigned char* at = raw.data() + (static_cast<std::size_t>(i) * block.width + c) * bytes;
-                if (as_double) std::memcpy(&value, at, bytes);
-                else std::memcpy(&narrow, at, bytes), value = narrow;
-                total[block.first + c] += value;
+                total[block.first + c] += real_at(raw.data() + (static_cast<std::size_t>(i) * block.width + c) * bytes, as_double);
             }
     }
     return total;

@@ -15,8 +15,10 @@ namespace lcl {
 
 /// How blocks are swept: CPUs take one work-item a block of many rows, GPUs a work-group a block of fewer.
 struct LaunchShape {
-    int group = 1;            ///< work-items a block, a power of two
-    Index block_rows = 8192;  ///< for PlanOptions
+    int group = 1;                ///< work-items a block, a power of two
+    Index block_rows = 4096;      ///< for PlanOptions
+    std::size_t cache_bytes = 0;  ///< what the sweeps of a chain that follow each other may fill with rows; 0: they do not
+    Index phase_blocks = 1;       ///< blocks that a phase of a chain has at least, so that all compute units are busy to its end
 };
 LaunchShape launch_shape(const DeviceInfo& device);
 
@@ -31,9 +33,10 @@ using ChannelValues = std::vector<double>;
 /// The plan's arrays on a device. All fields have the plan's vertex_count rows; all calls but norms() and sums return at once.
 class DeviceOperator {
 public:
-    DeviceOperator(std::shared_ptr<Context> context, std::shared_ptr<const Plan> plan, int group);
+    DeviceOperator(std::shared_ptr<Context> context, std::shared_ptr<const Plan> plan, const LaunchShape& shape);
 
     const Plan& plan() const { return *plan_; }
+    const LaunchShape& launch_shape() const { return shape_; }
     Context& context() const { return *context_; }
     const std::shared_ptr<Context>& shared_context() const { return context_; }
     Field make_field(int channels, Real real) const { return Field(context_, plan_->vertex_count, channels, real); }
@@ -45,16 +48,22 @@ public:
     void limit_points(const Field& x, Field& y, const Part& part);
     /// One sweep; the norms of m - A x are had by norms(). x and y differ; d may be y, or null where c is 0.
     void sweep(const Sweep& sweep, const Field& m, const Field& x, const Field* d, Field& y, const Part& part);
-    /// r = m - A x, m and x wide, r single; norms as above.
+    /// Sweeps one after the other, three-term: each takes the newest field as x, and overwrites the one before, which is its d; `x` is the newest before and
+    /// after. Waits; the norms of m - A x before each sweep. On a CPU the sweeps follow each other through the smooth part while its rows are in cache.
+    std::vector<ResidualNorms> chain(const std::vector<Sweep>& sweeps, const Field& m, Field& x, Field& y, const Part& part);
+    /// How a chain runs: blocks that a sweep takes in a phase, blocks that each sweep lags behind the one before it, sweeps at a time.
+    struct Phases {
+        Index width, lag, sweeps;
+    };
+    Phases phases(std::size_t sweeps, const Field& field, const Part& part) const;
+    /// r = m - A x in double or pairs of floats, m and x wide or single, r single; norms as above.
     void wide_residual(const Field& m, const Field& x, Field& r, const Part& part);
-    /// x += d on the part's rows; x wide, d single.
+    /// x += d on the part's rows; x wide or single, d single.
     void correct(const Field& d, Field& x, const Part& part);
-    /// Wide rows as floats, all rows.
-    void narrow(const Field& x, Field& y);
     /// GS-PIA over the rows of the schedule, in place; no norms.
     void relax_rows(const Schedule& schedule, const Field& m, Field& x);
     /// Waits; largest row norms that the last sweep, wide_residual or cg_update of a field like `like` left for the part. Normalised units;
-    /// `others` is the Euclidean norm over up to four channels here, never less than their largest value.
+    /// `others` is the Euclidean norm over up to eight channels here, never less than their largest value.
     ResidualNorms norms(const Field& like, const Part& part);
 
     /// q = A p; waits for <p, q>_D of each channel.
@@ -74,16 +83,20 @@ private:
     const Buffer& weights(Real real, bool weighted_rows);
     const Buffer& scaling(Real real);
     Partials& partials(const Field& field);
+    void enqueue_phases(const Phases& phases, const Part& part, cl_kernel relax);
+    void run_phases(const Phases& phases, const Sweep* sweeps, const Field& m, Field& x, Field& y, const Part& part);
+    std::vector<ResidualNorms> norms_of_sweeps(const Field& like, const Part& part, std::size_t sweeps);
     ScheduleArrays& schedule_arrays(const Schedule& schedule, Real real);
     ChannelValues sums(const Field& field, const Part& part);
     cl_kernel kernel(const char* file, const char* name, const Field& field, std::size_t block);
     LaunchSize size(const Part& part) const;
     Buffer upload(const void* data, std::size_t bytes, const char* what);
+    Buffer upload_doubled(const Array<Index>& rows, const char* what);
     Buffer upload_reals(const std::vector<double>& values, Real real, const char* what);
 
     std::shared_ptr<Context> context_;
     std::shared_ptr<const Plan> plan_;
-    int group_;
+    LaunchShape shape_;
     Buffer blocks_, runs_, indices_, weighted_offsets_, weighted_indices_, vertex_order_;
     std::map<std::pair<Real, bool>, Buffer> weights_;
     std::map<Real, Buffer> scaling_;

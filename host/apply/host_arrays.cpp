@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "host/field/host_rows.h"
+
 namespace lcl {
 
 Real real_of(Precision precision) { return precision == Precision::mixed ? Real::wide : precision == Precision::single ? Real::single : Real::full; }
@@ -25,14 +27,12 @@ void restore_rows(const Plan& plan, const std::vector<double>& kept, int channel
 void limit_points(DeviceOperator& A, const double* points, std::size_t stride, int channels, Precision precision, double* out, std::size_t out_stride) {
     const Plan& plan = A.plan();
     const Transform transform = fit_transform(plan, points, stride, channels);
-    std::vector<double> values = to_plan_order(plan, transform, points, stride, channels);
     Field x = A.make_field(channels, real_of(precision)), y = A.make_field(channels, real_of(precision));
-    x.upload(values.data(), 0, plan.vertex_count);
+    upload_rows(plan, transform, {points, stride}, x);
     if (plan.row_count < plan.vertex_count) y.copy_from(x);
     A.limit_points(x, y, plan.all_rows());
-    y.download(values.data(), 0, plan.vertex_count);
     const std::vector<double> kept = kept_rows(plan, points, stride, channels);
-    from_plan_order(plan, transform, values, channels, out, out_stride);
+    download_rows(plan, transform, y, {out, out_stride});
     restore_rows(plan, kept, channels, out, out_stride);
 }
 

@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "host/capi/handles.h"
+#include "host/field/host_rows.h"
 
 using namespace lcl;
 
@@ -19,16 +20,6 @@ const Transform& transform_of(lcl_field field, const char* name) {
     if (!field->transform)
         throw InvalidArgument(std::string("the field ") + name + " holds no values yet: upload them, or give it a centre and scale by lcl_field_match");
     return *field->transform;
-}
-
-/// A caller's rows as doubles, n x channels without gaps.
-std::vector<double> read_rows(const void* values, lcl_type type, std::size_t stride, int channels, Index rows) {
-    std::vector<double> out(static_cast<std::size_t>(rows) * channels);
-    for (std::size_t i = 0; i < out.size(); ++i) {
-        const std::size_t place = i / channels * stride + i % channels;
-        out[i] = type == LCL_TYPE_FLOAT ? static_cast<const float*>(values)[place] : static_cast<const double*>(values)[place];
-    }
-    return out;
 }
 
 void check_type(lcl_type type, std::size_t stride, int channels) {
@@ -111,10 +102,11 @@ lcl_status lcl_field_upload(lcl_field field, const void* values, lcl_type type, 
         if (stride == 0) stride = inner.channels();
         check_type(type, stride, inner.channels());
         const Plan& plan = field->A->system->plan();
-        const std::vector<double> rows = read_rows(required(values, "values"), type, stride, inner.channels(), plan.vertex_count);
-        require_finite(rows.data(), inner.channels(), inner.channels(), plan.vertex_count, "values");
-        if (!field->transform) field->transform = fit_transform(plan, rows.data(), inner.channels(), inner.channels());
-        inner.upload(to_plan_order(plan, *field->transform, rows.data(), inner.channels(), inner.channels()).data(), 0, plan.vertex_count);
+        const HostRows rows{required(values, "values"), stride, type == LCL_TYPE_FLOAT};
+        const ValueRanges ranges = value_ranges(plan, rows, inner.channels());
+        if (!ranges.are_finite) with_type(rows, [&](const auto* typed) { require_finite(typed, stride, inner.channels(), plan.vertex_count, "values"); });
+        if (!field->transform) field->transform = transform_of_ranges(plan, ranges);
+        upload_rows(plan, *field->transform, rows, inner);
         return LCL_OK;
     });
 }
@@ -125,16 +117,8 @@ lcl_status lcl_field_download(lcl_field field, void* values, lcl_type type, size
         if (stride == 0) stride = inner.channels();
         check_type(type, stride, inner.channels());
         const Plan& plan = field->A->system->plan();
-        std::vector<double> rows(static_cast<std::size_t>(plan.vertex_count) * inner.channels());
-        inner.download(rows.data(), 0, plan.vertex_count);
-        std::vector<double> out(rows.size());
-        from_plan_order(plan, transform_of(field, "to download"), rows, inner.channels(), out.data(), inner.channels());
-        required(values, "values");
-        for (std::size_t i = 0; i < out.size(); ++i) {
-            const std::size_t place = i / inner.channels() * stride + i % inner.channels();
-            if (type == LCL_TYPE_FLOAT) static_cast<float*>(values)[place] = static_cast<float>(out[i]);
-            else static_cast<double*>(values)[place] = out[i];
-        }
+        const Transform& transform = transform_of(field, "to download");
+        download_rows(plan, transform, inner, {required(values, "values"), stride, type == LCL_TYPE_FLOAT});
         return LCL_OK;
     });
 }

@@ -13,7 +13,7 @@
 #include "host/field/field.h"
 #include "host/io/mesh_file.h"
 #include "host/refine/refine.h"
-#include "host/solve/limit_system.h"
+#include "host/solve/local.h"
 
 namespace lcl {
 
@@ -86,6 +86,7 @@ private:
 struct lcl_operator_s : lcl::Counted {
     lcl::Reference<lcl_context_s> context;
     std::unique_ptr<lcl::LimitSystem> system;
+    std::unique_ptr<lcl::LocalSolver> local;  // made by the first local solve
 };
 
 struct lcl_field_s : lcl::Counted {
@@ -114,8 +115,10 @@ namespace lcl {
 /// Scheme of the options, resolved for a mesh, with ranges checked.
 SchemeOptions scheme_options(lcl_mesh_s& mesh, const lcl_scheme_options& options);
 
-/// Fails for the first value that is no finite number: "M of vertex 5 is nan in channel 1".
-void require_finite(const double* values, std::size_t stride, int channels, std::size_t rows, const char* name);
+/// Fails for a value, or for the first of many, that is no finite number: "M of vertex 5 is nan in channel 1". Real: float or double.
+void require_finite(double value, Index v, int channel, const char* name);
+template <class Real>
+void require_finite(const Real* values, std::size_t stride, int channels, std::size_t rows, const char* name);
 
 /// Marks of a list of vertices; empty for a null list. InvalidArgument for a vertex that is not there.
 std::vector<std::uint8_t> vertex_marks(const int32_t* vertices, std::size_t count, Index vertex_count, const char* name);

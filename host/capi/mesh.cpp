@@ -4,6 +4,7 @@
 #include <numeric>
 
 #include "host/capi/handles.h"
+#include "host/parallel.h"
 
 using namespace lcl;
 
@@ -22,7 +23,7 @@ const Topology& lcl_mesh_s::topology() {
 void lcl_mesh_s::refuse_tags(const Topology& topology) const {
     if (!file.tags.refused.empty()) throw BadInput(file.tags.refused);
     const bool no_rule = file.tags.interpolate_boundary == 0 && boundary == LCL_BOUNDARY_DEFAULT;
-    if (no_rule && std::count(topology.twin.begin(), topology.twin.end(), -1) > 0)
+    if (no_rule && !topology.is_closed())
         throw BadInput(
             "the file asks for `t interpolateboundary 0` (no surface along the boundary) on a mesh with a boundary, which is not offered: choose a boundary "
             "rule");
@@ -45,7 +46,9 @@ const Features& lcl_mesh_s::features() {
 
 const std::vector<Defect>& lcl_mesh_s::defects() {
     const std::lock_guard<std::mutex> lock(mutex_);
-    if (!defects_) defects_ = find_defects(file.mesh);
+    if (defects_) return *defects_;
+    if (!topology_) topology_ = topology_if_sound(file.mesh);
+    defects_ = topology_ ? find_defects_of_sound_mesh(file.mesh) : find_defects(file.mesh);
     return *defects_;
 }
 
@@ -62,8 +65,7 @@ BoundaryRule lcl_mesh_s::boundary_rule() const {
 void lcl_mesh_s::forget_positions() {
     const std::lock_guard<std::mutex> lock(mutex_);
     defects_.reset();
-    const auto is_finite = [](double value) { return std::isfinite(value); };
-    if (!std::all_of(file.mesh.positions.begin(), file.mesh.positions.end(), is_finite)) topology_.reset();  // no longer sound
+    if (!positions_are_finite(file.mesh)) topology_.reset();  // no longer sound
 }
 
 void lcl_mesh_s::forget_features() {
@@ -121,27 +123,29 @@ std::size_t point_stride(std::size_t stride, const char* name) {
 }
 
 template <class T>
-double value_at(const void* points, std::size_t place) {
-    return static_cast<double>(static_cast<const T*>(points)[place]);
+void copy_rows(const T* points, std::size_t stride, std::size_t count, std::vector<double>& positions) {
+    if (stride == 3) return positions.assign(points, points + 3 * count);
+    positions.resize(3 * count);
+    for (std::size_t v = 0; v < count; ++v) std::copy_n(points + v * stride, 3, &positions[3 * v]);
 }
 
 void copy_points(const lcl_mesh_data& data, std::vector<double>& positions) {
     const std::size_t stride = point_stride(data.point_stride, "data.point_stride");
     if (data.point_type != LCL_TYPE_DOUBLE && data.point_type != LCL_TYPE_FLOAT)
         throw InvalidArgument("data.point_type is " + std::to_string(data.point_type) + ", it is 0 (double) or 1 (float)");
-    const auto read = data.point_type == LCL_TYPE_FLOAT ? &value_at<float> : &value_at<double>;
-    positions.resize(static_cast<std::size_t>(data.vertex_count) * 3);
-    for (std::size_t i = 0; i < positions.size(); ++i) positions[i] = read(data.points, i / 3 * stride + i % 3);
+    if (data.point_type == LCL_TYPE_FLOAT) copy_rows(static_cast<const float*>(data.points), stride, data.vertex_count, positions);
+    else copy_rows(static_cast<const double*>(data.points), stride, data.vertex_count, positions);
 }
 
 void copy_faces(const lcl_mesh_data& data, PolygonMesh& mesh) {
     std::int64_t corners = 0;
+    mesh.face_offsets.resize(data.face_count + std::size_t{1});
     for (int32_t f = 0; f < data.face_count; ++f) {
         const int32_t degree = data.face_degrees ? data.face_degrees[f] : data.uniform_degree;
         if (degree < 0) throw InvalidArgument("face " + std::to_string(f) + " has " + std::to_string(degree) + " sides");
         corners += degree;
         if (corners > INT32_MAX) throw OutOfMemory("the faces have more than 2147483647 corners: split the mesh");
-        mesh.face_offsets.push_back(static_cast<Index>(corners));
+        mesh.face_offsets[f + 1] = static_cast<Index>(corners);
     }
     if (corners > 0) mesh.face_vertices.assign(required(data.face_vertices, "data.face_vertices"), data.face_vertices + corners);
 }
@@ -228,8 +232,13 @@ lcl_status lcl_mesh_create(const lcl_mesh_data* data, lcl_mesh* mesh) {
         if (given.vertex_count > 0) required(given.points, "data.points");
         MeshFile file;
         file.mesh.vertex_count = given.vertex_count;
-        copy_points(given, file.mesh.positions);
-        copy_faces(given, file.mesh);
+        parallel_for(
+            2,
+            [&](std::size_t begin, std::size_t end) {
+                if (begin == 0) copy_points(given, file.mesh.positions);
+                if (end == 2) copy_faces(given, file.mesh);
+            },
+            given.vertex_count < static_cast<Index>(smallest_parallel_piece) ? 2 : 1);
         *mesh = adopt(std::move(file));
         return LCL_OK;
     });

@@ -56,16 +56,21 @@ SchemeOptions scheme_options(lcl_mesh_s& mesh, const lcl_scheme_options& options
     return out;
 }
 
-void require_finite(const double* values, std::size_t stride, int channels, std::size_t rows, const char* name) {
-    for (std::size_t v = 0; v < rows; ++v)
-        for (int c = 0; c < channels; ++c) {
-            const double value = values[v * stride + c];
-            if (std::isfinite(value)) continue;
-            const std::string shown = std::isnan(value) ? "nan" : value > 0 ? "inf" : "-inf";
-            throw BadInput(std::string(name) + " of vertex " + std::to_string(v) + " is " + shown + " in channel " + std::to_string(c) + ": correct the value",
-                           {{static_cast<Index>(v)}, {}});
-        }
+void require_finite(double value, Index v, int channel, const char* name) {
+    if (std::isfinite(value)) return;
+    const std::string shown = std::isnan(value) ? "nan" : value > 0 ? "inf" : "-inf";
+    throw BadInput(std::string(name) + " of vertex " + std::to_string(v) + " is " + shown + " in channel " + std::to_string(channel) + ": correct the value",
+                   {{v}, {}});
 }
+
+template <class Real>
+void require_finite(const Real* values, std::size_t stride, int channels, std::size_t rows, const char* name) {
+    for (std::size_t v = 0; v < rows; ++v)
+        for (int c = 0; c < channels; ++c) require_finite(values[v * stride + c], static_cast<Index>(v), c, name);
+}
+
+template void require_finite(const float*, std::size_t, int, std::size_t, const char*);
+template void require_finite(const double*, std::size_t, int, std::size_t, const char*);
 
 std::vector<std::uint8_t> vertex_marks(const int32_t* vertices, std::size_t count, Index vertex_count, const char* name) {
     if (count > 0) required(vertices, name);

@@ -1,11 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "host/solve/solve.h"
 
+#include <cmath>
+#include <limits>
+
 #include "host/capi/handles.h"
 
 using namespace lcl;
 
 namespace {
+
+constexpr double isolated_range = 1e37;  // as in to_plan_order: isolated vertices may be anywhere
 
 Precision inner_precision(lcl_precision precision) {
     if (precision < LCL_PRECISION_MIXED || precision > LCL_PRECISION_DOUBLE)
@@ -61,6 +66,7 @@ void fill(lcl_solve_report* report, const SolveReport& inner) {
     out.seconds_download = inner.seconds_download;
     out.vertex_count = copy_first(out.vertices, inner.vertices);
     copy_text(out.message, inner.message);
+    out.changed_rows = inner.changed_rows;
     give(report, out, "report");
 }
 
@@ -87,6 +93,65 @@ lcl_status interpolate(lcl_operator A, const double* M, std::size_t stride, int3
     required(P, "P");
     if (given.warm_start != 0) require_finite(P, P_stride, channels, system.plan().vertex_count, "P");
     return conclude(solve_host(system, M, stride, channels, inner_options(given), given.warm_start != 0, P, P_stride), given, report);
+}
+
+/// M and P of one operator, M with values, alike.
+void check_fields(lcl_operator A, lcl_field M, lcl_field P) {
+    required(A, "A");
+    if (required(M, "M")->A.get() != A || required(P, "P")->A.get() != A) throw InvalidArgument("M and P are fields of another operator");
+    if (M == P) throw InvalidArgument("M and P are the same field");
+    if (!M->transform) throw InvalidArgument("the field M holds no values yet: upload them first");
+    if (P->field.channels() != M->field.channels() || P->field.real() != M->field.real()) throw InvalidArgument("M and P differ in channels or precision");
+}
+
+void check_start(const lcl_field_s& M, const lcl_field_s& P) {
+    if (!P.transform || P.transform->centre != M.transform->centre || P.transform->scale != M.transform->scale)
+        throw InvalidArgument("P, the start, is kept in another centre and scale than M: use lcl_field_match before uploading it");
+}
+
+SolveOptions field_options(const lcl_field_s& M, const lcl_solve_options& given) {
+    SolveOptions options = inner_options(given);
+    if (M.field.real() == Real::full) options.precision = Precision::full;
+    else if (options.precision == Precision::full)
+        throw InvalidArgument("the fields hold floats, and double precision was asked for: create them with LCL_PRECISION_DOUBLE");
+    return options;
+}
+
+/// Normalised, within what the field can hold.
+double stored_value(const lcl_field_s& M, Index row, int channel, double value) {
+    const Plan& plan = M.A->system->plan();
+    const Index v = plan.vertex_of_row[row];
+    require_finite(value, v, channel, "values");
+    const double stored = (value - M.transform->centre[channel]) * M.transform->scale[channel];
+    const double largest = M.field.real() == Real::single ? std::numeric_limits<float>::max() : std::numeric_limits<double>::max();
+    if (row < plan.isolated_count) return std::clamp(stored, -isolated_range, isolated_range);
+    if (std::fabs(stored) <= largest) return stored;
+    throw BadInput("the value of vertex " + std::to_string(v) + " in channel " + std::to_string(channel) + ", " + std::to_string(value) +
+                       ", is too far from the others for the number type of the field",
+                   {{v}, {}});
+}
+
+/// Rows and normalised values of a list of vertices, each once.
+LocalEdit local_edit(const lcl_field_s& M, const int32_t* vertices, std::size_t count, const double* values) {
+    const Plan& plan = M.A->system->plan();
+    const int channels = M.field.channels();
+    LocalEdit edit;
+    if (count > 0) required(vertices, "vertices"), required(values, "values");
+    for (std::size_t i = 0; i < count; ++i) {
+        if (vertices[i] < 0 || vertices[i] >= plan.vertex_count)
+            throw InvalidArgument("vertex " + std::to_string(vertices[i]) + " was given, the field has " + std::to_string(plan.vertex_count),
+                                  {{vertices[i]}, {}});
+        edit.rows.push_back(plan.row_of_vertex[vertices[i]]);
+        for (int c = 0; c < channels; ++c) edit.values.push_back(stored_value(M, edit.rows.back(), c, values[i * channels + c]));
+    }
+    std::vector<Index> sorted = edit.rows;
+    std::sort(sorted.begin(), sorted.end());
+    const auto twice = std::adjacent_find(sorted.begin(), sorted.end());
+    if (twice != sorted.end()) {
+        const Index v = plan.vertex_of_row[*twice];
+        throw InvalidArgument("vertex " + std::to_string(v) + " was given twice", {{v}, {}});
+    }
+    return edit;
 }
 
 }  // namespace
@@ -151,23 +216,32 @@ lcl_status lcl_task_wait(lcl_task task) {
 int32_t lcl_task_is_done(lcl_task task) { return task == nullptr || task->result.wait_for(std::chrono::seconds(0)) == std::future_status::ready; }
 void lcl_task_release(lcl_task task) { release(task); }
 
-lcl_status lcl_interpolate_field(lcl_operator A, lcl_field M, const lcl_solve_options* options, lcl_field P, lcl_solve_report* report) {
+lcl_status lcl_solve_local(lcl_operator A, lcl_field M, lcl_field P, const int32_t* vertices, size_t count, const double* values,
+                           const lcl_solve_options* options, lcl_solve_report* report) {
     return guarded([&] {
-        LimitSystem& system = *required(A, "A")->system;
-        if (required(M, "M")->A.get() != A || required(P, "P")->A.get() != A) throw InvalidArgument("M and P are fields of another operator");
-        if (M == P) throw InvalidArgument("M and P are the same field");
-        if (!M->transform) throw InvalidArgument("the field M holds no values yet: upload them first");
-        if (P->field.channels() != M->field.channels() || P->field.real() != M->field.real()) throw InvalidArgument("M and P differ in channels or precision");
+        check_fields(A, M, P);
         const lcl_solve_options given = options_or(options, LCL_SOLVE_OPTIONS_INIT, "options");
         options_or(report, LCL_SOLVE_REPORT_INIT, "report");  // refuses one without a size before any work
-        SolveOptions inner = inner_options(given);
-        if (M->field.real() == Real::full) inner.precision = Precision::full;
-        else if (inner.precision == Precision::full)
-            throw InvalidArgument("the fields hold floats, and double precision was asked for: create them with LCL_PRECISION_DOUBLE");
+        const SolveOptions inner = field_options(*M, given);
+        check_start(*M, *P);
+        if (given.solver != LCL_SOLVER_AUTO && given.solver != LCL_SOLVER_GS)
+            throw InvalidArgument("options.solver is " + std::to_string(given.solver) + ", a local solve takes 0 (auto) or 4 (GS)");
+        if (given.exact_sweeps > 0) throw InvalidArgument("options.exact_sweeps is set, a local solve goes on to the tolerance");
+        const LocalEdit edit = local_edit(*M, vertices, count, values);
+        if (!A->local) A->local = std::make_unique<LocalSolver>(*A->system);
+        return conclude(A->local->solve(edit, *M->transform, inner, M->field, P->field), given, report);
+    });
+}
+
+lcl_status lcl_interpolate_field(lcl_operator A, lcl_field M, const lcl_solve_options* options, lcl_field P, lcl_solve_report* report) {
+    return guarded([&] {
+        check_fields(A, M, P);
+        const lcl_solve_options given = options_or(options, LCL_SOLVE_OPTIONS_INIT, "options");
+        options_or(report, LCL_SOLVE_REPORT_INIT, "report");  // refuses one without a size before any work
+        const SolveOptions inner = field_options(*M, given);
         if (given.warm_start == 0) P->transform = M->transform;
-        else if (!P->transform || P->transform->centre != M->transform->centre || P->transform->scale != M->transform->scale)
-            throw InvalidArgument("P, the start, is kept in another centre and scale than M: use lcl_field_match before uploading it");
-        return conclude(solve_fields(system, M->field, *M->transform, inner, given.warm_start != 0, P->field), given, report);
+        else check_start(*M, *P);
+        return conclude(solve_fields(*A->system, M->field, *M->transform, inner, given.warm_start != 0, P->field), given, report);
     });
 }
 

@@ -148,6 +148,27 @@ Event Context::read_async(const Buffer& buffer, std::size_t offset, std::size_t 
     return done;
 }
 
+Mapping Context::map(const Buffer& buffer, std::size_t offset, std::size_t bytes, bool for_writing, const Event& after, const std::string& doing) {
+    check_range(buffer, offset, bytes, doing);
+    const std::vector<cl_event> waits = list_of(after);
+    if (!waits.empty()) check(clFlush(queue_), "clFlush", doing);
+    cl_int code = CL_SUCCESS;
+    void* const data = clEnqueueMapBuffer(transfer_queue_, buffer.get(), CL_TRUE, for_writing ? CL_MAP_WRITE_INVALIDATE_REGION : CL_MAP_READ,
+                                          buffer.offset() + offset, bytes, static_cast<cl_uint>(waits.size()), list_of(waits), nullptr, &code);
+    check(code, "clEnqueueMapBuffer", doing);
+    return {transfer_queue_, buffer.get(), data};
+}
+
+void Mapping::unmap(const std::string& doing) {
+    cl_event event = nullptr;
+    check(clEnqueueUnmapMemObject(queue_, memory_, std::exchange(data_, nullptr), 0, nullptr, &event), "clEnqueueUnmapMemObject", doing);
+    Event(event).wait();
+}
+
+Mapping::~Mapping() {
+    if (data_ != nullptr && clEnqueueUnmapMemObject(queue_, memory_, data_, 0, nullptr, nullptr) == CL_SUCCESS) clFinish(queue_);
+}
+
 void Context::copy(const Buffer& from, std::size_t from_offset, const Buffer& to, std::size_t to_offset, std::size_t bytes, const std::string& doing) {
     check_range(from, from_offset, bytes, doing);
     check_range(to, to_offset, bytes, doing);
@@ -191,16 +212,40 @@ void set_argument_bytes(cl_kernel kernel, unsigned place, const void* value, std
     check_argument(clSetKernelArg(kernel, place, bytes, value), kernel, place);
 }
 
-Event enqueue(Context& context, cl_kernel kernel, LaunchSize size) {
+Event enqueue(Context& context, cl_kernel kernel, LaunchSize size) { return enqueue_on(context, context.queue(), kernel, size, {}); }
+
+Event enqueue_on(Context& context, cl_command_queue queue, cl_kernel kernel, LaunchSize size, const Event& after) {
     if (size.global == 0) return {};
+    const std::vector<cl_event> waits = list_of(after);
     cl_event event = nullptr;
-    const int code = clEnqueueNDRangeKernel(context.queue(), kernel, 1, nullptr, &size.global, size.local ? &size.local : nullptr, 0, nullptr, &event);
+    const int code = clEnqueueNDRangeKernel(queue, kernel, 1, nullptr, &size.global, size.local ? &size.local : nullptr, static_cast<cl_uint>(waits.size()),
+                                            list_of(waits), &event);
     if (code != CL_SUCCESS) {
         check(code, "clEnqueueNDRangeKernel",
               "starting " + kernel_name(kernel) + " with " + std::to_string(size.global) + " work-items in groups of " + std::to_string(size.local) + " on " +
                   context.device().name);
     }
     return Event(event);
+}
+
+Pipeline::Pipeline(Context& context) : context_(context), before_{Event(), Event(), context.marker()} {
+    check(clFlush(context.queue()), "clFlush", "starting a pipeline of kernels");
+}
+
+// Its own queue makes a launch wait for the one two before it, and an event for the one three before it, which is on the other queue.
+void Pipeline::enqueue(cl_kernel kernel, LaunchSize size) {
+    const cl_command_queue queue = on_second_ ? context_.transfer_queue_ : context_.queue_;
+    const Event& other = count_ == 1 ? before_[1] : before_[0];  // the second launch: what was on the kernels' queue before the first
+    Event event = enqueue_on(context_, queue, kernel, size, other);
+    check(clFlush(queue), "clFlush", "starting a kernel of a pipeline");
+    before_ = {before_[1], before_[2], std::move(event)};
+    on_second_ = !on_second_;
+    ++count_;
+}
+
+void Pipeline::join() {
+    const Event& newest_of_second = on_second_ ? before_[1] : before_[2];
+    if (count_ > 1) context_.wait_for({newest_of_second.get()});
 }
 
 }  // namespace lcl

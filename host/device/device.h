@@ -5,6 +5,7 @@
 #define CL_TARGET_OPENCL_VERSION 120
 #include <CL/cl.h>
 
+#include <array>
 #include <cstddef>
 #include <memory>
 #include <string>
@@ -26,6 +27,7 @@ struct DeviceInfo {
     std::size_t memory_bytes = 0;  ///< global memory
     std::size_t max_allocation_bytes = 0;
     std::size_t max_work_group_size = 0;
+    std::size_t cache_bytes = 0;  ///< global memory cache; 0 where the driver does not say
     unsigned compute_units = 0;
     unsigned clock_mhz = 0;
 };
@@ -100,6 +102,22 @@ private:
     std::size_t counted_bytes_ = 0;  // in the context's allocated_bytes(); 0 for a caller's memory
 };
 
+/// Bytes of a buffer that the host may touch until unmap(), which waits. Not to outlive its context and buffer.
+class Mapping {
+public:
+    Mapping(cl_command_queue queue, cl_mem memory, void* data) : queue_(queue), memory_(memory), data_(data) {}
+    Mapping(const Mapping&) = delete;
+    Mapping& operator=(const Mapping&) = delete;
+    ~Mapping();  ///< unmaps after an exception
+    void* data() const { return data_; }
+    void unmap(const std::string& doing);
+
+private:
+    cl_command_queue queue_;
+    cl_mem memory_;
+    void* data_;
+};
+
 /// One device with its queues and built programs. One thread at a time; different contexts are independent, also of one device.
 class Context : public std::enable_shared_from_this<Context> {
 public:
@@ -124,6 +142,9 @@ public:
     /// Copies that return at once, on the transfer queue; `from` and `to` must live until the event is done. They start after `after`.
     Event write_async(const Buffer& buffer, std::size_t offset, std::size_t bytes, const void* from, const Event& after, const std::string& doing);
     Event read_async(const Buffer& buffer, std::size_t offset, std::size_t bytes, void* to, const Event& after, const std::string& doing);
+    /// Maps bytes for the host after `after` and waits. On a CPU that is the device's own memory, without a copy. for_writing: what was there is lost, and all
+    /// of it is to be written; else it is only read.
+    Mapping map(const Buffer& buffer, std::size_t offset, std::size_t bytes, bool for_writing, const Event& after, const std::string& doing);
     /// Device to device on the kernels' queue.
     void copy(const Buffer& from, std::size_t from_offset, const Buffer& to, std::size_t to_offset, std::size_t bytes, const std::string& doing);
     void fill_zero(const Buffer& buffer, const std::string& doing);
@@ -136,6 +157,7 @@ public:
 
 private:
     friend class Buffer;
+    friend class Pipeline;
     struct Programs;  // built programs and kernels by (file, options)
     Context() = default;
     DeviceInfo device_;
@@ -164,12 +186,38 @@ void set_argument(cl_kernel kernel, unsigned place, const T& value) {
 /// Enqueues on the context's kernel queue; a global size of 0 does nothing.
 Event enqueue(Context& context, cl_kernel kernel, LaunchSize size);
 
-/// Sets the arguments in order, checks every result, and enqueues.
+/// The same on any queue of the context, after an event that the queue does not wait for by itself.
+Event enqueue_on(Context& context, cl_command_queue queue, cl_kernel kernel, LaunchSize size, const Event& after);
+
+/// Sets the arguments in order and checks every result.
 template <class... Arguments>
-Event launch(Context& context, cl_kernel kernel, LaunchSize size, const Arguments&... arguments) {
+void set_arguments([[maybe_unused]] cl_kernel kernel, const Arguments&... arguments) {
     unsigned place = 0;
     (set_argument(kernel, place++, arguments), ...);
+}
+
+/// Sets the arguments and enqueues.
+template <class... Arguments>
+Event launch(Context& context, cl_kernel kernel, LaunchSize size, const Arguments&... arguments) {
+    set_arguments(kernel, arguments...);
     return enqueue(context, kernel, size);
 }
+
+/// Launches each of which may begin while the one before it still runs, but not before the one before that has ended: two queues take turns, so that no
+/// compute unit waits for the last work-group of every launch.
+class Pipeline {
+public:
+    /// Launches begin after what is on the kernels' queue now.
+    explicit Pipeline(Context& context);
+    void enqueue(cl_kernel kernel, LaunchSize size);
+    /// What is put on the kernels' queue from now on waits for all launches.
+    void join();
+
+private:
+    Context& context_;
+    std::array<Event, 3> before_;  // of the three newest launches, oldest first
+    bool on_second_ = false;
+    int count_ = 0;
+};
 
 }  // namespace lcl

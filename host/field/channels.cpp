@@ -11,36 +11,91 @@
 namespace lcl {
 namespace {
 
-constexpr double float_range = 1e37;
+ValueRanges no_range(int channels) {
+    constexpr double infinity = std::numeric_limits<double>::infinity();
+    return {true, std::vector<double>(channels, infinity), std::vector<double>(channels, -infinity)};
+}
+
+void join(ValueRanges& all, const ValueRanges& some) {
+    all.are_finite = all.are_finite && some.are_finite;
+    for (std::size_t c = 0; c < all.low.size(); ++c) {
+        all.low[c] = std::min(all.low[c], some.low[c]);
+        all.high[c] = std::max(all.high[c], some.high[c]);
+    }
+}
+
+/// Ranges of up to `most` channels from `first` on, over the rows [begin, end) that count(v); the rest is only looked at.
+template <int most, class T, class Counts>
+void add_ranges(const T* values, std::size_t stride, int first, int channels, std::size_t begin, std::size_t end, const Counts& counts, ValueRanges& out) {
+    constexpr double infinity = std::numeric_limits<double>::infinity();
+    double low[most], high[most], zero[most];  // x * 0 is 0 for finite x, else nan
+    for (int c = 0; c < most; ++c) low[c] = infinity, high[c] = -infinity, zero[c] = 0;
+    for (std::size_t v = begin; v < end; ++v) {
+        const bool is_counted = counts(v);
+        for (int c = 0; c < most && c < channels; ++c) {
+            const double value = values[v * stride + first + c];
+            zero[c] += value * 0;
+            low[c] = is_counted && value < low[c] ? value : low[c];
+            high[c] = is_counted && value > high[c] ? value : high[c];
+        }
+    }
+    for (int c = 0; c < most && c < channels; ++c) {
+        out.are_finite = out.are_finite && zero[c] == 0;
+        out.low[first + c] = low[c];
+        out.high[first + c] = high[c];
+    }
+}
+
+/// Names the first value, in the plan's order, that is not finite, isolated vertices left out.
+void refuse_not_finite(const Plan& plan, const double* values, std::size_t stride, int channels) {
+    for (Index row = plan.isolated_count; row < plan.vertex_count; ++row) {
+        const Index v = plan.vertex_of_row[row];
+        for (int c = 0; c < channels; ++c)
+            if (!std::isfinite(values[v * stride + c]))
+                throw BadInput("channel " + std::to_string(c) + " of vertex " + std::to_string(v) + " is not finite: correct or leave out the value",
+                               {{v}, {}});
+    }
+}
 
 }  // namespace
 
 std::vector<ChannelBlock> channel_blocks(int channels) {
-    const auto width_of = [](int count) { return count > 2 ? 4 : count; };
     std::vector<ChannelBlock> blocks;
     for (int first = 0; first < channels;) {
-        const int count = std::min(channels - first, first == 0 ? 3 : 4);
-        blocks.push_back({first, count, width_of(count)});
+        const int count = std::min(channels - first, first == 0 ? 3 : 8);
+        blocks.push_back({first, count, row_width(count)});
         first += count;
     }
     return blocks;
 }
 
-Transform fit_transform(const Plan& plan, const double* values, std::size_t stride, int channels) {
-    constexpr double infinity = std::numeric_limits<double>::infinity();
-    std::vector<double> low(channels, infinity), high(channels, -infinity);
-    for (Index row = plan.isolated_count; row < plan.vertex_count; ++row) {
-        const double* value = values + static_cast<std::size_t>(plan.vertex_of_row[row]) * stride;
-        for (int c = 0; c < channels; ++c) {
-            if (!std::isfinite(value[c])) {
-                const Index v = plan.vertex_of_row[row];
-                throw BadInput("channel " + std::to_string(c) + " of vertex " + std::to_string(v) + " is not finite: correct or leave out the value",
-                               {{v}, {}});
+ValueRanges value_ranges(const Plan& plan, const HostRows& rows, int channels) {
+    const std::size_t count = plan.vertex_count, pieces = piece_count(count);
+    std::vector<ValueRanges> parts(pieces, no_range(channels));
+    for_each_piece(count, pieces, [&](std::size_t piece, std::size_t begin, std::size_t end) {
+        with_type(rows, [&](const auto* values) {
+            const auto all = [](std::size_t) { return true; };
+            const auto used = [&](std::size_t v) { return plan.row_of_vertex[v] >= plan.isolated_count; };
+            for (int first = 0; first < channels; first += 4) {
+                if (plan.isolated_count == 0 && channels == 3) add_ranges<3>(values, rows.stride, 0, 3, begin, end, all, parts[piece]);
+                else add_ranges<4>(values, rows.stride, first, channels - first, begin, end, used, parts[piece]);
             }
-            low[c] = std::min(low[c], value[c]);
-            high[c] = std::max(high[c], value[c]);
-        }
-    }
+        });
+    });
+    ValueRanges ranges = no_range(channels);
+    for (const ValueRanges& part : parts) join(ranges, part);
+    return ranges;
+}
+
+Transform fit_transform(const Plan& plan, const double* values, std::size_t stride, int channels) {
+    const ValueRanges ranges = value_ranges(plan, {values, stride}, channels);
+    if (!ranges.are_finite) refuse_not_finite(plan, values, stride, channels);
+    return transform_of_ranges(plan, ranges);
+}
+
+Transform transform_of_ranges(const Plan& plan, const ValueRanges& ranges) {
+    const auto& [finite, low, high] = ranges;
+    const int channels = static_cast<int>(low.size());
     Transform transform{std::vector<double>(channels, 0.0), std::vector<double>(channels, 1.0)};
     if (plan.isolated_count == plan.vertex_count) return transform;
     double diagonal = 0;

@@ -4,17 +4,17 @@
 #include <array>
 #include <string>
 
-#include "host/parallel.h"
+#include "host/field/row_format.h"
 
 namespace lcl {
 namespace {
 
 constexpr std::size_t piece_rows = 131072;  // what one transfer carries while the next is converted
 
-void split(double value, float& high, float& low) {
-    high = static_cast<float>(value);
-    low = static_cast<float>(value - high);
-}
+/// One stretch of a block's rows on its way to the host.
+struct Piece {
+    std::size_t block = 0, begin = 0, rows = 0;
+};
 
 /// Waits for its events when it goes, so that memory declared before outlives transfers also when something throws.
 struct Travelling {
@@ -41,34 +41,35 @@ Field::Field(std::shared_ptr<Context> context, Index rows, int channels, Real re
 
 std::size_t Field::row_bytes(std::size_t block) const { return blocks_[block].width * (real_ == Real::single ? sizeof(float) : sizeof(double)); }
 
-void Field::pack(const double* values, std::size_t count, std::size_t block, void* out) const {
-    const ChannelBlock& b = blocks_[block];
-    parallel_for(count, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i)
-            for (int c = 0; c < b.width; ++c) {
-                const double value = c < b.count ? values[i * channels_ + b.first + c] : 0.0;
-                if (real_ == Real::single) static_cast<float*>(out)[i * b.width + c] = static_cast<float>(value);
-                else if (!is_pair()) static_cast<double*>(out)[i * b.width + c] = value;
-                else split(value, static_cast<float*>(out)[i * 2 * b.width + c], static_cast<float*>(out)[(i * 2 + 1) * b.width + c]);
-            }
-    });
+RowFormat Field::format() const {
+    if (real_ == Real::single) return RowFormat::floats;
+    return real_ == Real::wide && !context_->device().has_double ? RowFormat::pairs : RowFormat::doubles;
 }
 
-void Field::unpack(const void* in, std::size_t count, std::size_t block, double* values) const {
-    const ChannelBlock& b = blocks_[block];
-    parallel_for(count, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i)
-            for (int c = 0; c < b.count; ++c) {
-                double& value = values[i * channels_ + b.first + c];
-                if (real_ == Real::single) value = static_cast<const float*>(in)[i * b.width + c];
-                else if (!is_pair()) value = static_cast<const double*>(in)[i * b.width + c];
-                else value = static_cast<double>(static_cast<const float*>(in)[i * 2 * b.width + c]) + static_cast<const float*>(in)[(i * 2 + 1) * b.width + c];
-            }
-    });
+Field::Way Field::best_way() const { return context_->device().is_cpu ? Way::mapped : Way::staged; }
+
+void Field::write(Index first, Index count, const Fill& fill, std::optional<Way> way) {
+    if (way.value_or(best_way()) == Way::staged) return write_staged(first, count, fill);
+    const Event before = context_->marker();
+    for (std::size_t b = 0; count > 0 && b < blocks_.size(); ++b) {
+        Mapping mapping = context_->map(buffers_[b], first * row_bytes(b), count * row_bytes(b), true, before, "uploading a field");
+        fill(b, 0, count, mapping.data());
+        mapping.unmap("uploading a field");
+    }
 }
 
-void Field::upload(const double* values, Index first, Index count) {
-    std::array<std::vector<unsigned char>, 2> staging;
+void Field::read(Index first, Index count, const Take& take, std::optional<Way> way) const {
+    if (way.value_or(best_way()) == Way::staged) return read_staged(first, count, take);
+    const Event before = context_->marker();
+    for (std::size_t b = 0; count > 0 && b < blocks_.size(); ++b) {
+        Mapping mapping = context_->map(buffers_[b], first * row_bytes(b), count * row_bytes(b), false, before, "downloading a field");
+        take(b, 0, count, mapping.data());
+        mapping.unmap("downloading a field");
+    }
+}
+
+void Field::write_staged(Index first, Index count, const Fill& fill) {
+    std::array<Array<unsigned char>, 2> staging;
     Travelling travelling;
     const Event before = context_->marker();
     int turn = 0;
@@ -77,25 +78,22 @@ void Field::upload(const double* values, Index first, Index count) {
             const std::size_t rows = std::min(piece_rows, count - begin);
             travelling.events[turn].wait();
             staging[turn].resize(rows * row_bytes(b));
-            pack(values + begin * channels_, rows, b, staging[turn].data());
+            fill(b, begin, rows, staging[turn].data());
             travelling.events[turn] =
                 context_->write_async(buffers_[b], (first + begin) * row_bytes(b), rows * row_bytes(b), staging[turn].data(), before, "uploading a field");
         }
     for (const Event& event : travelling.events) event.wait();
 }
 
-void Field::download(double* values, Index first, Index count) const {
-    std::array<std::vector<unsigned char>, 2> staging;
+void Field::read_staged(Index first, Index count, const Take& take) const {
+    std::array<Array<unsigned char>, 2> staging;
     Travelling travelling;
-    struct Piece {
-        std::size_t block, begin, rows;
-    };
     std::array<Piece, 2> pieces{};
     const Event before = context_->marker();
     const auto finish = [&](int turn) {
         if (pieces[turn].rows == 0) return;
         travelling.events[turn].wait();
-        unpack(staging[turn].data(), pieces[turn].rows, pieces[turn].block, values + pieces[turn].begin * channels_);
+        take(pieces[turn].block, pieces[turn].begin, pieces[turn].rows, staging[turn].data());
     };
     int turn = 0;
     for (std::size_t b = 0; b < blocks_.size(); ++b)
@@ -109,6 +107,20 @@ void Field::download(double* values, Index first, Index count) const {
         }
     finish(turn);
     finish(turn ^ 1);
+}
+
+void Field::upload(const double* values, Index first, Index count) {
+    write(first, count, [&](std::size_t b, std::size_t begin, std::size_t rows, void* out) {
+        const double* const from = values + begin * channels_ + blocks_[b].first;
+        pack_rows(format(), blocks_[b], rows, out, [&](std::size_t i, int c) { return from[i * channels_ + c]; });
+    });
+}
+
+void Field::download(double* values, Index first, Index count) const {
+    read(first, count, [&](std::size_t b, std::size_t begin, std::size_t rows, const void* in) {
+        double* const to = values + begin * channels_ + blocks_[b].first;
+        unpack_rows(format(), blocks_[b], rows, in, [&](std::size_t i, int c, double value) { to[i * channels_ + c] = value; });
+    });
 }
 
 void Field::copy_from(const Field& other) {

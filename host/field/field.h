@@ -2,7 +2,10 @@
 // n x c values on a device, in a plan's order and normalised.
 #pragma once
 
+#include <cstdint>
+#include <functional>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "host/device/device.h"
@@ -15,6 +18,12 @@ enum class Real : std::uint8_t {
     single,  ///< float
     wide,    ///< the exact half of mixed precision: double where the device has it, else pairs of floats (48 bits)
     full     ///< double; refused without double precision
+};
+
+enum class RowFormat : std::uint8_t {
+    floats,
+    doubles,
+    pairs  ///< a row of floats, then what they leave of the doubles
 };
 
 /// Rows are in the plan's order; the values are normalised by the caller's Transform.
@@ -31,8 +40,21 @@ public:
     const Buffer& buffer(std::size_t block) const { return buffers_[block]; }
     std::size_t row_bytes(std::size_t block) const;
 
-    /// Rows [first, first + count) from and to normalised doubles in the plan's order, `values` pointing at row `first`: count x channels. Large uploads
-    /// convert one piece while the piece before travels.
+    /// How rows lie in the buffers.
+    RowFormat format() const;
+
+    enum class Way : std::uint8_t {
+        mapped,  ///< the host works in the buffer itself: on CPUs
+        staged   ///< through memory of the host, piece by piece, one piece being converted while another travels
+    };
+    /// fill(block, begin, rows, out) writes rows [first + begin, first + begin + rows) of a block as format() and row_bytes() have them.
+    using Fill = std::function<void(std::size_t block, std::size_t begin, std::size_t rows, void* out)>;
+    using Take = std::function<void(std::size_t block, std::size_t begin, std::size_t rows, const void* in)>;
+    /// Rows [first, first + count) of all blocks, by the way that suits the device unless one is given. Waits.
+    void write(Index first, Index count, const Fill& fill, std::optional<Way> way = {});
+    void read(Index first, Index count, const Take& take, std::optional<Way> way = {}) const;
+
+    /// Rows [first, first + count) from and to normalised doubles in the plan's order, `values` pointing at row `first`: count x channels.
     void upload(const double* values, Index first, Index count);
     void download(double* values, Index first, Index count) const;
     /// Copies all rows of a field of the same shape and type, on the device.
@@ -41,9 +63,9 @@ public:
     Context& context() const { return *context_; }
 
 private:
-    bool is_pair() const { return real_ == Real::wide && !context_->device().has_double; }
-    void pack(const double* values, std::size_t count, std::size_t block, void* out) const;
-    void unpack(const void* in, std::size_t count, std::size_t block, double* values) const;
+    Way best_way() const;
+    void write_staged(Index first, Index count, const Fill& fill);
+    void read_staged(Index first, Index count, const Take& take) const;
 
     std::shared_ptr<Context> context_;
     Index rows_ = 0;

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <initializer_list>
 #include <limits>
 #include <numeric>
 
-#include "host/mesh/half_edges.h"
-#include "host/mesh/topology.h"
+#include "host/mesh/soundness.h"
+#include "host/parallel.h"
 
 namespace lcl {
 namespace {
@@ -138,6 +139,39 @@ std::vector<char> find_corner_defects(const PolygonMesh& mesh, std::vector<Defec
     repeated.append_to(defects);
     few.append_to(defects);
     return bad;
+}
+
+/// Half-edges in buckets by their lower vertex; inside a bucket in ascending order. A bucket plus one mark per vertex finds all half-edges of an edge in
+/// linear time, also at a pole of any valence and without hashing.
+struct HalfEdgeBuckets {
+    struct Entry {
+        Index half_edge;
+        Index higher;  ///< the other, higher vertex
+    };
+    std::vector<Index> offsets;  ///< vertex_count + 1
+    std::vector<Entry> entries;
+};
+
+/// Buckets of all half-edges of the faces that are not bad; their vertices are in range.
+HalfEdgeBuckets bucket_half_edges(const PolygonMesh& mesh, const std::vector<char>& bad) {
+    const auto for_each = [&](auto&& visit) {
+        for (Index f = 0; f < mesh.face_count(); ++f) {
+            if (bad[f]) continue;
+            const Index begin = mesh.face_offsets[f], last = mesh.face_offsets[f + 1] - 1;
+            for (Index h = begin; h < last; ++h) visit(h, mesh.face_vertices[h], mesh.face_vertices[h + 1]);
+            visit(last, mesh.face_vertices[last], mesh.face_vertices[begin]);
+        }
+    };
+    HalfEdgeBuckets buckets;
+    // Counted two places further on, so that filling moves each place on to what it has to be in the end.
+    auto& offsets = buckets.offsets;
+    offsets.assign(mesh.vertex_count + std::size_t{2}, 0);
+    for_each([&](Index, Index a, Index b) { ++offsets[std::min(a, b) + std::size_t{2}]; });
+    std::partial_sum(offsets.begin(), offsets.end(), offsets.begin());
+    buckets.entries.resize(offsets.back());
+    for_each([&](Index h, Index a, Index b) { buckets.entries[offsets[std::min(a, b) + 1]++] = {h, std::max(a, b)}; });
+    offsets.pop_back();
+    return buckets;
 }
 
 /// All half-edges of the sound faces by edge: those of edge e are half_edges[offsets[e]] .., ascending; edges by first appearance.
@@ -299,15 +333,61 @@ bool has_no_area(const PolygonMesh& mesh, const FaceCorners& corners) {
     return std::hypot(area[0], area[1], area[2]) / 2 < 1e-14;
 }
 
-void find_area_defects(const PolygonMesh& mesh, const std::vector<char>& bad, std::vector<Defect>& defects) {
-    if (mesh.positions.size() < 3 * static_cast<std::size_t>(mesh.vertex_count)) return;
-    Collector collector(DefectKind::zero_area, "such faces");
-    for (Index f = 0; f < mesh.face_count(); ++f) {
-        if (bad[f] || !has_no_area(mesh, corners_of(mesh, f))) continue;
-        if (collector.is_first()) collector.set_message("face " + text(f) + " has no area", "it is accepted, but has no normal of its own");
-        collector.add({}, {f});
+/// Much more area than has_no_area lets pass, and sizes whose squares are no trouble: true of nearly every face, and quick to see.
+bool surely_has_area(const PolygonMesh& mesh, const FaceCorners& corners) {
+    const double* origin = &mesh.positions[3 * static_cast<std::size_t>(*corners.begin)];
+    double extent = 0, area[3] = {0, 0, 0}, previous[3] = {0, 0, 0};
+    for (const Index* v = corners.begin + 1; v != corners.end; ++v) {
+        const double* point = &mesh.positions[3 * static_cast<std::size_t>(*v)];
+        const double p[3] = {point[0] - origin[0], point[1] - origin[1], point[2] - origin[2]};
+        extent += p[0] * p[0] + p[1] * p[1] + p[2] * p[2];  // more than the largest square
+        area[0] += previous[1] * p[2] - previous[2] * p[1];
+        area[1] += previous[2] * p[0] - previous[0] * p[2];
+        area[2] += previous[0] * p[1] - previous[1] * p[0];
+        for (int c = 0; c < 3; ++c) previous[c] = p[c];
     }
+    const double square = area[0] * area[0] + area[1] * area[1] + area[2] * area[2];
+    return extent > 1e-100 && extent < 1e100 && square > 1e-26 * extent * extent;
+}
+
+/// Faces without area, of those whose corners are `usable`.
+template <class Usable>
+void find_area_defects(const PolygonMesh& mesh, const Usable& usable, std::vector<Defect>& defects) {
+    if (mesh.positions.size() < 3 * static_cast<std::size_t>(mesh.vertex_count)) return;
+    const std::size_t pieces = piece_count(mesh.face_count());
+    std::vector<std::vector<Index>> flat(pieces);
+    for_each_piece(mesh.face_count(), pieces, [&](std::size_t piece, std::size_t begin, std::size_t end) {
+        for (Index f = static_cast<Index>(begin); f < static_cast<Index>(end); ++f) {
+            if (!usable(f)) continue;
+            const FaceCorners corners = corners_of(mesh, f);
+            if (!surely_has_area(mesh, corners) && has_no_area(mesh, corners)) flat[piece].push_back(f);
+        }
+    });
+    Collector collector(DefectKind::zero_area, "such faces");
+    for (const std::vector<Index>& faces : flat)
+        for (const Index f : faces) {
+            if (collector.is_first()) collector.set_message("face " + text(f) + " has no area", "it is accepted, but has no normal of its own");
+            collector.add({}, {f});
+        }
     collector.append_to(defects);
+}
+
+/// Sums of x * 0, which is 0 for finite x, else nan; four at once.
+bool all_finite(const double* begin, const double* end) {
+    double sums[4] = {0, 0, 0, 0};
+    for (; end - begin >= 4; begin += 4)
+        for (int i = 0; i < 4; ++i) sums[i] += begin[i] * 0;
+    for (; begin != end; ++begin) sums[0] += *begin * 0;
+    return sums[0] + sums[1] + sums[2] + sums[3] == 0;
+}
+
+/// As find_corner_defects, of one face.
+bool face_is_sound(const PolygonMesh& mesh, Index f, std::vector<Index>& last_face) {
+    const FaceCorners corners = corners_of(mesh, f);
+    if (corners.size() < 3) return false;
+    for (const Index* v = corners.begin; v != corners.end; ++v)
+        if (!in_range(mesh, *v)) return false;
+    return repeated_vertex(corners, f, mesh.vertex_count, last_face) < 0;
 }
 
 }  // namespace
@@ -327,22 +407,29 @@ const char* defect_name(DefectKind kind) {
 }
 
 bool corners_are_sound(const PolygonMesh& mesh) {
-    std::vector<Index> last_face;
     if (!offsets_span(mesh)) return false;
-    for (Index f = 0; f < mesh.face_count(); ++f) {
-        const FaceCorners corners = corners_of(mesh, f);
-        if (corners.size() < 3) return false;
-        for (const Index* v = corners.begin; v != corners.end; ++v)
-            if (!in_range(mesh, *v)) return false;
-        if (repeated_vertex(corners, f, mesh.vertex_count, last_face) >= 0) return false;
-    }
-    return true;
+    std::atomic<bool> sound{true};
+    parallel_for(mesh.face_count(), [&](std::size_t begin, std::size_t end) {
+        std::vector<Index> last_face;
+        for (std::size_t f = begin; f < end && sound; ++f)
+            if (!face_is_sound(mesh, static_cast<Index>(f), last_face)) sound = false;
+    });
+    return sound;
 }
 
 bool positions_are_finite(const PolygonMesh& mesh) {
-    double sum = 0;  // x * 0 is 0 for finite x, else nan
-    for (const double x : mesh.positions) sum += x * 0;
-    return sum == 0;
+    std::atomic<bool> finite{true};
+    parallel_for(mesh.positions.size(), [&](std::size_t begin, std::size_t end) {
+        if (!all_finite(mesh.positions.data() + begin, mesh.positions.data() + end)) finite = false;
+    });
+    return finite;
+}
+
+std::vector<Defect> find_defects_of_sound_mesh(const PolygonMesh& mesh) {
+    std::vector<Defect> defects;
+    find_area_defects(
+        mesh, [](Index) { return true; }, defects);
+    return defects;
 }
 
 std::vector<Defect> find_defects(const PolygonMesh& mesh) {
@@ -350,7 +437,8 @@ std::vector<Defect> find_defects(const PolygonMesh& mesh) {
     const std::vector<char> bad = find_corner_defects(mesh, defects);
     find_connectivity_defects(mesh, bad, defects.empty(), defects);
     find_position_defects(mesh, defects);
-    find_area_defects(mesh, bad, defects);
+    find_area_defects(
+        mesh, [&](Index f) { return bad[f] == 0; }, defects);
     return defects;
 }
 

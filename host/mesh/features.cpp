@@ -2,6 +2,9 @@
 #include "host/mesh/features.h"
 
 #include <cmath>
+#include <numeric>
+
+#include "host/parallel.h"
 
 namespace lcl {
 namespace {
@@ -71,14 +74,18 @@ double angle_between(const Vector& a, const Vector& b) {
 }
 
 void mark_creases_by_angle(const PolygonMesh& mesh, const Topology& topology, double degrees, Features& features) {
-    std::vector<Vector> normals(topology.face_count);
-    for (Index f = 0; f < topology.face_count; ++f) normals[f] = newell_normal(mesh, f);
-    for (Index e = 0; e < topology.edge_count; ++e) {
-        const Index h = topology.edge_half_edge[e];
-        if (topology.twin[h] < 0) continue;
-        const double angle = angle_between(normals[topology.half_edge_face[h]], normals[topology.half_edge_face[topology.twin[h]]]);
-        if (angle > degrees * radians_per_degree) features.edge_is_sharp[e] = 1;
-    }
+    Array<Vector> normals(topology.face_count);
+    parallel_for(topology.face_count, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t f = begin; f < end; ++f) normals[f] = newell_normal(mesh, static_cast<Index>(f));
+    });
+    parallel_for(topology.edge_count, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t e = begin; e < end; ++e) {
+            const Index h = topology.edge_half_edge[e];
+            if (topology.twin[h] < 0) continue;
+            const double angle = angle_between(normals[topology.half_edge_face[h]], normals[topology.half_edge_face[topology.twin[h]]]);
+            if (angle > degrees * radians_per_degree) features.edge_is_sharp[e] = 1;
+        }
+    });
 }
 
 /// Visits the edges at v in face order, beginning with that of its own half-edge: visit(edge, other end).
@@ -115,22 +122,53 @@ std::array<Index, 2> sharp_neighbours(const Topology& topology, const Features& 
     return ends;
 }
 
-void classify_vertices(const Topology& topology, const std::vector<char>& marked, BoundaryRule rule, Features& features) {
-    std::vector<std::uint8_t> sharp_edges(topology.vertex_count, 0);  // stops at 3
+/// How many sharp edges end at each vertex, up to 3.
+std::vector<std::uint8_t> count_sharp_edges(const Topology& topology, const Features& features) {
+    std::vector<std::uint8_t> sharp_edges(topology.vertex_count, 0);
     for (Index e = 0; e < topology.edge_count; ++e) {
         if (!features.edge_is_sharp[e]) continue;
         const Index h = topology.edge_half_edge[e];
         for (const Index v : {topology.origin(h), topology.destination(h)})
             if (sharp_edges[v] < 3) ++sharp_edges[v];
     }
-    features.kind.resize(topology.vertex_count);
-    features.curve_neighbours.assign(topology.vertex_count, {-1, -1});
-    for (Index v = 0; v < topology.vertex_count; ++v) {
-        const VertexKind kind = kind_of(topology, v, sharp_edges[v], marked[v] != 0, rule);
-        features.kind[v] = kind;
-        if (kind == VertexKind::curve || kind == VertexKind::dart) features.curve_neighbours[v] = sharp_neighbours(topology, features, v);
-        if (kind == VertexKind::corner) ++features.corner_count;
-    }
+    return sharp_edges;
+}
+
+/// Boundary edges are sharp; counts the creases among the others.
+void mark_boundary(const Topology& topology, Features& features) {
+    const std::size_t pieces = piece_count(topology.edge_count);
+    std::vector<Index> creases(pieces, 0);
+    for_each_piece(topology.edge_count, pieces, [&](std::size_t piece, std::size_t begin, std::size_t end) {
+        for (Index e = static_cast<Index>(begin); e < static_cast<Index>(end); ++e) {
+            if (topology.is_boundary_edge(e)) features.edge_is_sharp[e] = 1;
+            else creases[piece] += features.edge_is_sharp[e];
+        }
+    });
+    features.crease_count = std::accumulate(creases.begin(), creases.end(), Index{0});
+}
+
+void classify_vertices(const Topology& topology, const std::vector<char>& marked, BoundaryRule rule, Features& features) {
+    const std::vector<std::uint8_t> sharp_edges = count_sharp_edges(topology, features);
+    features.curve_neighbours.resize(topology.vertex_count);
+    const std::size_t pieces = piece_count(topology.vertex_count);
+    std::vector<Index> corners(pieces, 0);
+    for_each_piece(topology.vertex_count, pieces, [&](std::size_t piece, std::size_t begin, std::size_t end) {
+        for (Index v = static_cast<Index>(begin); v < static_cast<Index>(end); ++v) {
+            const VertexKind kind = kind_of(topology, v, sharp_edges[v], marked[v] != 0, rule);
+            const bool has_neighbours = kind == VertexKind::curve || kind == VertexKind::dart;
+            features.kind[v] = kind;
+            features.curve_neighbours[v] = has_neighbours ? sharp_neighbours(topology, features, v) : std::array<Index, 2>{-1, -1};
+            corners[piece] += kind == VertexKind::corner;
+        }
+    });
+    features.corner_count = std::accumulate(corners.begin(), corners.end(), Index{0});
+}
+
+/// Vertices of a surface without boundary, creases and corners.
+void classify_as_smooth(const Topology& topology, Features& features) {
+    parallel_for(topology.vertex_count, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t v = begin; v < end; ++v) features.kind[v] = topology.is_isolated(static_cast<Index>(v)) ? VertexKind::isolated : VertexKind::smooth;
+    });
 }
 
 }  // namespace
@@ -138,12 +176,14 @@ void classify_vertices(const Topology& topology, const std::vector<char>& marked
 Features find_features(const PolygonMesh& mesh, const Topology& topology, const FeatureOptions& options) {
     Features features;
     features.edge_is_sharp.assign(topology.edge_count, 0);
+    features.kind.resize(topology.vertex_count);
+    if (topology.is_closed() && options.creases.empty() && options.corners.empty() && options.crease_angle_degrees < 0) {
+        classify_as_smooth(topology, features);
+        return features;
+    }
     mark_given_creases(topology, options.creases, features);
     if (options.crease_angle_degrees >= 0) mark_creases_by_angle(mesh, topology, options.crease_angle_degrees, features);
-    for (Index e = 0; e < topology.edge_count; ++e) {
-        if (topology.is_boundary_edge(e)) features.edge_is_sharp[e] = 1;
-        else features.crease_count += features.edge_is_sharp[e];
-    }
+    mark_boundary(topology, features);
     std::vector<char> marked(topology.vertex_count, 0);
     for (const Index v : options.corners) {
         check_vertex(topology, v, "the list of corners");

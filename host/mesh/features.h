@@ -34,10 +34,10 @@ struct FeatureOptions {
 
 struct Features {
     std::vector<std::uint8_t> edge_is_sharp;  ///< edge_count, 1 for boundary edges and creases
-    std::vector<VertexKind> kind;             ///< vertex_count
+    Array<VertexKind> kind;                   ///< vertex_count
     /// vertex_count: for curve vertices the other ends of the two sharp edges, for darts that of the one (twice), else {-1, -1}.
-    /// At a boundary: [0] the end of the outgoing boundary half-edge (E_0), [1] the last edge's (E_k).
-    std::vector<std::array<Index, 2>> curve_neighbours;
+    /// At a boundary: [0] the end of the outgoing boundary half-edge (E_0), [1] the last edge's (E_k). Empty where no edge is sharp and no vertex marked.
+    Array<std::array<Index, 2>> curve_neighbours;
     Index crease_count = 0;  ///< sharp edges off the boundary
     Index corner_count = 0;  ///< vertices that stay, isolated ones not counted
 };

@@ -2,7 +2,8 @@
 #include "host/operator/limit_rows.h"
 
 #include <algorithm>
-#include <numeric>
+#include <tuple>
+#include <utility>
 
 namespace lcl {
 namespace {
@@ -12,17 +13,29 @@ void add(LimitRow& row, Index column, double weight) {
     row.weights.push_back(weight);
 }
 
-/// Every column once, ascending: a vertex that is met several times gets the sum.
-LimitRow merged(const LimitRow& row) {
-    std::vector<std::size_t> order(row.columns.size());
-    std::iota(order.begin(), order.end(), std::size_t{0});
-    std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return row.columns[a] < row.columns[b]; });
-    LimitRow out;
-    for (const std::size_t i : order) {
-        if (!out.columns.empty() && out.columns.back() == row.columns[i]) out.weights.back() += row.weights[i];
-        else add(out, row.columns[i], row.weights[i]);
+/// Every column once, ascending: a vertex that is met several times gets the sum, in the order of its parts.
+void merge(LimitRow& row) {
+    const std::size_t size = row.columns.size();
+    std::vector<std::pair<Index, double>> sorted;
+    for (std::size_t i = 1; size <= 64 && i < size; ++i) {  // an insertion sort, which needs no memory
+        const Index column = row.columns[i];
+        const double weight = row.weights[i];
+        std::size_t place = i;
+        for (; place > 0 && row.columns[place - 1] > column; --place) row.columns[place] = row.columns[place - 1], row.weights[place] = row.weights[place - 1];
+        row.columns[place] = column, row.weights[place] = weight;
     }
-    return out;
+    if (size > 64) {
+        for (std::size_t i = 0; i < size; ++i) sorted.emplace_back(row.columns[i], row.weights[i]);
+        std::stable_sort(sorted.begin(), sorted.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+        for (std::size_t i = 0; i < size; ++i) std::tie(row.columns[i], row.weights[i]) = sorted[i];
+    }
+    std::size_t last = 0;
+    for (std::size_t i = 1; i < size; ++i) {
+        if (row.columns[i] == row.columns[last]) row.weights[last] += row.weights[i];
+        else ++last, row.columns[last] = row.columns[i], row.weights[last] = row.weights[i];
+    }
+    row.columns.resize(last + 1);
+    row.weights.resize(last + 1);
 }
 
 /// Catmull-Clark mask times n (n + 5): n (n - 1 + alpha) on V, 2 - alpha on each edge end, 4/d on every corner of every face (mesh expansion paper).
@@ -73,28 +86,17 @@ RowClass LimitRows::classify(Index v) const {
     if (kind == VertexKind::curve || fold) return {RowKind::curve, own_weights ? RowShape::weighted : RowShape::ring, 2};
     if (kind == VertexKind::dart) return {RowKind::dart, RowShape::weighted, 0};
     const int n = topology_.vertex_face_count[v];
-    bool triangles = true, quads = true;
-    Index h = topology_.vertex_half_edge[v];
-    for (int i = 0; i < n && (triangles || quads); ++i, h = topology_.rotate(h)) {
-        const Index degree = topology_.degree(topology_.half_edge_face[h]);
-        triangles = triangles && degree == 3;
-        quads = quads && degree == 4;
-    }
-    if (own_weights || !(triangles || quads)) return {RowKind::smooth, RowShape::weighted, n};
-    return {RowKind::smooth, quads ? RowShape::full_ring : RowShape::ring, n};
+    const Index degree = own_weights ? 0 : common_degree(v);
+    return {RowKind::smooth, degree == 4 ? RowShape::full_ring : degree == 3 ? RowShape::ring : RowShape::weighted, n};
 }
 
-void LimitRows::ring_neighbours(Index v, const RowClass& row, Index* out) const {
-    if (row.kind == RowKind::curve) {
-        std::copy(features_.curve_neighbours[v].begin(), features_.curve_neighbours[v].end(), out);
-        return;
-    }
-    const Topology& t = topology_;
-    Index h = t.vertex_half_edge[v];
-    for (int i = 0; i < row.edges; ++i, h = t.rotate(h)) {
-        out[i] = t.destination(h);
-        if (row.shape == RowShape::full_ring) out[row.edges + i] = t.destination(t.next(h));
-    }
+Index LimitRows::common_degree(Index v) const {
+    if (topology_.uniform_degree > 0) return topology_.uniform_degree;
+    const auto degree_at = [&](Index i) { return topology_.degree(topology_.half_edge_face[topology_.fan_half_edges[i]]); };
+    const Index first = topology_.fan_offsets[v], degree = degree_at(first);
+    for (Index i = first + 1; i < topology_.fan_offsets[v + 1]; ++i)
+        if (degree_at(i) != degree) return 0;
+    return degree;
 }
 
 RingWeights LimitRows::ring_weights(const RowClass& row) const {
@@ -105,12 +107,16 @@ RingWeights LimitRows::ring_weights(const RowClass& row) const {
 }
 
 LimitRow LimitRows::row(Index v) {
+    LimitRow out;
+    row(v, out);
+    return out;
+}
+
+void LimitRows::row(Index v, LimitRow& row) {
     const RowClass kind = classify(v);
-    LimitRow row;
-    if (kind.shape == RowShape::identity) {
-        add(row, v, 1.0);
-        return row;
-    }
+    row.columns.clear();
+    row.weights.clear();
+    if (kind.shape == RowShape::identity) return add(row, v, 1.0);
     if (kind.kind == RowKind::curve) {
         const RingWeights weights = curve_weights(options_.scheme);
         add(row, v, weights.vertex);
@@ -123,7 +129,7 @@ LimitRow LimitRows::row(Index v) {
     const double lambda = options_.lambda_at(v);
     for (double& weight : row.weights) weight *= 1 - lambda;
     if (lambda != 0) add(row, v, lambda);
-    return merged(row);
+    merge(row);
 }
 
 void LimitRows::add_smooth(Index v, LimitRow& row) const {

@@ -2,6 +2,7 @@
 // Rows of the limit operator A, one vertex at a time, in double and in the caller's numbering. Masks: mesh expansion, Loop PIA, two-phase and Doo-Sabin papers.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <map>
 #include <vector>
@@ -50,14 +51,31 @@ public:
               const std::vector<std::uint8_t>& owned);
 
     RowClass classify(Index v) const;
-    /// Neighbours of a ring row: edge ends E_0 .. in face order, then for full_ring the diagonals F_0 ... `out` has room for edges or 2 edges.
-    void ring_neighbours(Index v, const RowClass& row, Index* out) const;
+    /// Neighbours of a ring row: edge ends E_0 .. in face order, then for full_ring the diagonals F_0 ... `out` has room for edges or 2 edges. walk: of
+    /// face_walk.h.
+    template <class Walk>
+    void ring_neighbours(const Walk& walk, Index v, const RowClass& row, Index* out) const {
+        if (row.kind == RowKind::curve) {
+            std::copy(features_.curve_neighbours[v].begin(), features_.curve_neighbours[v].end(), out);
+            return;
+        }
+        const Index* const fan = topology_.fan_half_edges.data() + topology_.fan_offsets[v];
+        for (int i = 0; i < row.edges; ++i) {
+            const Index next = walk.next(fan[i]);
+            out[i] = topology_.face_vertices[next];
+            if (row.shape == RowShape::full_ring) out[row.edges + i] = topology_.face_vertices[walk.next(next)];
+        }
+    }
     /// The whole row, every column once, in ascending order.
     LimitRow row(Index v);
+    /// The same into memory that is used again.
+    void row(Index v, LimitRow& row);
     /// Weights of all ring rows with so many edge ends.
     RingWeights ring_weights(const RowClass& row) const;
 
 private:
+    /// Degree of all faces at v, 0 where they differ.
+    Index common_degree(Index v) const;
     void add_smooth(Index v, LimitRow& row) const;
     void add_dart(Index v, LimitRow& row);
     void add_catmull_clark_dart(Index v, Index first, const std::vector<double>& weights, LimitRow& row) const;

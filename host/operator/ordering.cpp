@@ -1,62 +1,63 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "host/operator/ordering.h"
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
-
-#include "host/parallel.h"
 
 namespace lcl {
 namespace {
 
-/// Spreads ten bits so that two free bits follow each.
-std::uint32_t spread(std::uint32_t x) {
-    x = (x | (x << 16)) & 0x030000FF;
-    x = (x | (x << 8)) & 0x0300F00F;
-    x = (x | (x << 4)) & 0x030C30C3;
-    return (x | (x << 2)) & 0x09249249;
-}
-
-struct Keyed {
-    std::uint32_t key;
-    Index vertex;
-};
-
-std::vector<Keyed> morton_keys(const std::vector<double>& positions, Index count) {
-    std::array<double, 3> low{0, 0, 0}, high{0, 0, 0};
-    for (int axis = 0; axis < 3 && count > 0; ++axis) low[axis] = high[axis] = positions[axis];
-    for (std::size_t i = 0; i < positions.size(); ++i) {
-        low[i % 3] = std::min(low[i % 3], positions[i]);
-        high[i % 3] = std::max(high[i % 3], positions[i]);
-    }
-    const double extent = std::max({high[0] - low[0], high[1] - low[1], high[2] - low[2]});
-    const double scale = extent > 0 ? 1023 / extent : 0;  // one scale for all axes keeps cells cubic
-    std::vector<Keyed> keyed(count);
-    parallel_for(count, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t v = begin; v < end; ++v) {
-            std::uint32_t key = 0;
-            for (int axis = 0; axis < 3; ++axis) key |= spread(static_cast<std::uint32_t>((positions[3 * v + axis] - low[axis]) * scale)) << axis;
-            keyed[v] = {key, static_cast<Index>(v)};
+/// The vertex with a face that lies lowest along the longest axis of the bounding box; 0 if there is none.
+Index end_of_longest_axis(const Topology& topology, const std::vector<double>& positions) {
+    std::array<Index, 3> lowest{0, 0, 0}, highest{0, 0, 0};
+    for (Index v = 0; v < topology.vertex_count; ++v) {
+        if (topology.is_isolated(v)) continue;
+        for (int axis = 0; axis < 3; ++axis) {
+            const double x = positions[3 * static_cast<std::size_t>(v) + axis];
+            const auto at = [&](Index w) { return positions[3 * static_cast<std::size_t>(w) + axis]; };
+            if (topology.is_isolated(lowest[axis]) || x < at(lowest[axis])) lowest[axis] = v;
+            if (topology.is_isolated(highest[axis]) || x > at(highest[axis])) highest[axis] = v;
         }
-    });
-    return keyed;
+    }
+    int longest = 0;
+    const auto extent = [&](int axis) {
+        return positions[3 * static_cast<std::size_t>(highest[axis]) + axis] - positions[3 * static_cast<std::size_t>(lowest[axis]) + axis];
+    };
+    for (int axis = 1; axis < 3; ++axis)
+        if (extent(axis) > extent(longest)) longest = axis;
+    return lowest[longest];
 }
 
 }  // namespace
 
-std::vector<Index> morton_order(const std::vector<double>& positions, Index vertex_count) {
-    constexpr int digit_bits = 10, digits = 1 << digit_bits;
-    std::vector<Keyed> keyed = morton_keys(positions, vertex_count), sorted(keyed.size());
-    for (int pass = 0; pass < 3; ++pass) {
-        std::array<std::size_t, digits + 1> place{};
-        const int shift = pass * digit_bits;
-        for (const Keyed& k : keyed) ++place[((k.key >> shift) & (digits - 1)) + 1];
-        for (int d = 0; d < digits; ++d) place[d + 1] += place[d];
-        for (const Keyed& k : keyed) sorted[place[(k.key >> shift) & (digits - 1)]++] = k;
-        keyed.swap(sorted);
-    }
-    std::vector<Index> order(keyed.size());
-    for (std::size_t i = 0; i < keyed.size(); ++i) order[i] = keyed[i].vertex;
+Array<Index> breadth_first_order(const Topology& topology, const std::vector<double>& positions) {
+    const Index n = topology.vertex_count;
+    Array<Index> order(n);
+    std::vector<std::uint8_t> vertex_is_met(n, 0), face_is_met(topology.face_count, 0);
+    Index met = 0, next = 0;
+    const auto meet = [&](Index v) {
+        if (vertex_is_met[v]) return;
+        vertex_is_met[v] = 1;
+        order[met++] = v;
+    };
+    const auto meet_face = [&](Index face) {
+        if (face_is_met[face]) return;
+        face_is_met[face] = 1;
+        for (Index corner = topology.face_offsets[face]; corner < topology.face_offsets[face + 1]; ++corner) meet(topology.face_vertices[corner]);
+    };
+    const auto spread_from = [&](Index start) {
+        for (meet(start); next < met; ++next)
+            for (Index i = topology.fan_offsets[order[next]]; i < topology.fan_offsets[order[next] + 1]; ++i)
+                meet_face(topology.half_edge_face[topology.fan_half_edges[i]]);
+    };
+    if (n == 0) return order;
+    const Index start = end_of_longest_axis(topology, positions);
+    if (!topology.is_isolated(start)) spread_from(start);
+    for (Index v = 0; v < n; ++v)
+        if (!vertex_is_met[v] && !topology.is_isolated(v)) spread_from(v);
+    for (Index v = 0; v < n; ++v)
+        if (topology.is_isolated(v)) order[met++] = v;
     return order;
 }
 

@@ -6,17 +6,69 @@
 #include <cmath>
 #include <limits>
 #include <string>
+#include <utility>
 
+#include "host/counting_sort.h"
+#include "host/mesh/face_walk.h"
 #include "host/operator/ordering.h"
-#include "host/parallel.h"
+#include "host/prefetch.h"
 
 namespace lcl {
 namespace {
 
-constexpr int part_count = 5;  // fixed, curve, dart, smooth, ghost: RowKind's order
-
 /// Rows with equal codes stand together inside a block.
-std::int64_t shape_code(const RowClass& row) { return (static_cast<std::int64_t>(row.shape) << 32) + row.edges; }
+std::uint32_t shape_code(const RowClass& row) { return static_cast<std::uint32_t>(row.shape) << 30 | static_cast<std::uint32_t>(row.edges); }
+RowShape shape_of(std::uint32_t code) { return static_cast<RowShape>(code >> 30); }
+int edges_of(std::uint32_t code) { return static_cast<int>(code & ((1u << 30) - 1)); }
+
+/// Sorts the rows of one block by their codes, stably. Codes of few edges are counted; the others, of poles, are rare.
+class BlockSort {
+public:
+    struct Group {
+        std::uint32_t code;
+        Index count;
+    };
+
+    /// vertices: the block's rows, reordered. Returns the codes that occur, ascending.
+    std::vector<Group> sort(Index* vertices, Index count, const Array<std::uint32_t>& codes) {
+        std::array<Index, 4 * counted_edges> place{};
+        for (Index i = 0; i < count; ++i) ++place[bucket(codes[vertices[i]])];
+        std::vector<Group> groups;
+        Index first = 0;
+        for (std::size_t b = 0; b < place.size(); ++b) {
+            if (place[b] > 0) groups.push_back({code_of(b), place[b]});
+            first += std::exchange(place[b], first);
+        }
+        sorted_.assign(vertices, vertices + count);
+        for (const Index v : sorted_) vertices[place[bucket(codes[v])]++] = v;
+        return split_poles(groups, vertices, codes);
+    }
+
+private:
+    static constexpr std::uint32_t counted_edges = 64;  // so many and more share a bucket
+
+    static std::size_t bucket(std::uint32_t code) { return (code >> 30) * counted_edges + std::min(code & ((1u << 30) - 1), counted_edges - 1); }
+    static std::uint32_t code_of(std::size_t bucket) { return static_cast<std::uint32_t>(bucket / counted_edges << 30 | bucket % counted_edges); }
+
+    static std::vector<Group> split_poles(const std::vector<Group>& groups, Index* vertices, const Array<std::uint32_t>& codes) {
+        std::vector<Group> split;
+        for (const Group& group : groups) {
+            if (edges_of(group.code) + 1 < static_cast<int>(counted_edges)) {
+                split.push_back(group);
+            } else {
+                std::stable_sort(vertices, vertices + group.count, [&](Index a, Index b) { return codes[a] < codes[b]; });
+                for (Index i = 0; i < group.count; ++i) {
+                    if (i == 0 || codes[vertices[i]] != codes[vertices[i - 1]]) split.push_back({codes[vertices[i]], 0});
+                    ++split.back().count;
+                }
+            }
+            vertices += group.count;
+        }
+        return split;
+    }
+
+    std::vector<Index> sorted_;
+};
 
 class PlanBuilder {
 public:
@@ -30,57 +82,64 @@ public:
     Plan build() {
         classify();
         order_rows();
+        sort_blocks();
         make_runs();
-        fill_rings();
+        with_face_walk(topology_, [&](const auto& walk) { fill_rings(walk); });
         fill_weighted();
-        fill_scaling();
+        fill_run_values();
+        measure_reach();
         return std::move(plan_);
     }
 
 private:
+    /// Isolated vertices, then RowKind's order.
+    static constexpr std::size_t group_count = 6;
+
+    std::size_t group_of(Index v, RowKind kind) const { return kind == RowKind::fixed && topology_.is_isolated(v) ? 0 : static_cast<std::size_t>(kind) + 1; }
+
     void classify() {
-        const Index n = topology_.vertex_count;
-        plan_.vertex_count = n;
-        classes_.resize(n);
+        const std::size_t n = topology_.vertex_count;
+        plan_.vertex_count = topology_.vertex_count;
+        codes_.resize(n);
+        groups_.resize(n);
         parallel_for(n, [&](std::size_t begin, std::size_t end) {
-            for (std::size_t v = begin; v < end; ++v) classes_[v] = rows_.classify(static_cast<Index>(v));
+            for (Index v = static_cast<Index>(begin); v < static_cast<Index>(end); ++v) {
+                const RowClass row = rows_.classify(v);
+                codes_[v] = shape_code(row);
+                groups_[v] = static_cast<std::uint8_t>(group_of(v, row.kind));
+            }
         });
-        std::array<Index, part_count> counts{};
-        for (const RowClass& row : classes_) ++counts[static_cast<int>(row.kind)];
-        Index first = 0;
-        for (int kind = 0; kind < part_count - 1; ++kind) {
-            part(kind) = {first, counts[kind], 0, 0};
-            first += counts[kind];
-        }
-        plan_.row_count = first;
     }
 
-    Part& part(int kind) {
-        Part* const parts[] = {&plan_.fixed, &plan_.curves, &plan_.darts, &plan_.smooth};
-        return *parts[kind];
-    }
-
-    /// Morton order inside each part, then equal shapes together inside each block of rows.
+    /// Breadth-first order inside each part: a stable counting sort by group.
     void order_rows() {
-        std::array<Index, part_count> place{plan_.fixed.first_row, plan_.curves.first_row, plan_.darts.first_row, plan_.smooth.first_row, plan_.row_count};
-        plan_.vertex_of_row.resize(plan_.vertex_count);
-        for (const Index v : morton_order(mesh_.positions, plan_.vertex_count)) plan_.vertex_of_row[place[static_cast<int>(classes_[v].kind)]++] = v;
-        const auto first = plan_.vertex_of_row.begin();
-        const auto used = std::stable_partition(first, first + plan_.fixed.end_row(), [&](Index v) { return topology_.is_isolated(v); });
-        plan_.isolated_count = static_cast<Index>(used - first);
-        for (int kind = 0; kind < part_count - 1; ++kind) cut_into_blocks(part(kind));
-        parallel_for(
-            plan_.blocks.size(),
-            [&](std::size_t begin, std::size_t end) {
-                for (std::size_t b = begin; b < end; ++b) {
-                    const auto first = plan_.vertex_of_row.begin() + plan_.blocks[b].first_row;
-                    std::stable_sort(first, first + plan_.blocks[b].row_count,
-                                     [&](Index a, Index c) { return shape_code(classes_[a]) < shape_code(classes_[c]); });
-                }
-            },
-            4);
-        plan_.row_of_vertex.resize(plan_.vertex_count);
-        for (Index row = 0; row < plan_.vertex_count; ++row) plan_.row_of_vertex[plan_.vertex_of_row[row]] = row;
+        Array<Index> order = breadth_first_order(topology_, mesh_.positions);
+        const std::size_t n = order.size(), pieces = piece_count(n);
+        Array<Index> places(pieces * group_count);
+        std::array<Index, group_count + 1> starts;
+        for_each_piece(n, pieces, [&](std::size_t piece, std::size_t begin, std::size_t end) {
+            std::array<Index, group_count> counts{};
+            for (std::size_t v = begin; v < end; ++v) ++counts[groups_[order[v]]];
+            std::copy(counts.begin(), counts.end(), places.begin() + piece * group_count);
+        });
+        counts_to_places(places, group_count, pieces, starts.data());
+        set_parts(starts);
+        if (plan_.smooth.row_count == plan_.vertex_count) return plan_.vertex_of_row.swap(order);
+        plan_.vertex_of_row.resize(n);
+        for_each_piece(n, pieces, [&](std::size_t piece, std::size_t begin, std::size_t end) {
+            Index* const place = places.data() + piece * group_count;
+            for (std::size_t i = begin; i < end; ++i) plan_.vertex_of_row[place[groups_[order[i]]]++] = order[i];
+        });
+    }
+
+    void set_parts(const std::array<Index, group_count + 1>& starts) {
+        plan_.isolated_count = starts[1];
+        plan_.fixed = {0, starts[2], 0, 0};
+        plan_.curves = {starts[2], starts[3] - starts[2], 0, 0};
+        plan_.darts = {starts[3], starts[4] - starts[3], 0, 0};
+        plan_.smooth = {starts[4], starts[5] - starts[4], 0, 0};
+        plan_.row_count = starts[5];
+        for (Part* part : {&plan_.fixed, &plan_.curves, &plan_.darts, &plan_.smooth}) cut_into_blocks(*part);
     }
 
     void cut_into_blocks(Part& part) {
@@ -90,21 +149,47 @@ private:
         part.block_count = static_cast<Index>(plan_.blocks.size()) - part.first_block;
     }
 
+    template <class Body>
+    void for_each_block(const Body& body) {
+        parallel_for(
+            plan_.blocks.size(),
+            [&](std::size_t begin, std::size_t end) {
+                for (std::size_t b = begin; b < end; ++b) body(b);
+            },
+            4);
+    }
+
+    /// Equal shapes together inside each block, and the inverse of the order.
+    void sort_blocks() {
+        block_groups_.resize(plan_.blocks.size());
+        plan_.row_of_vertex.resize(plan_.vertex_count);
+        parallel_for(
+            plan_.blocks.size(),
+            [&](std::size_t begin, std::size_t end) {
+                BlockSort block_sort;
+                for (std::size_t b = begin; b < end; ++b) {
+                    const Block& block = plan_.blocks[b];
+                    block_groups_[b] = block_sort.sort(plan_.vertex_of_row.data() + block.first_row, block.row_count, codes_);
+                    for (Index row = block.first_row; row < block.first_row + block.row_count; ++row) plan_.row_of_vertex[plan_.vertex_of_row[row]] = row;
+                }
+            },
+            4);
+        for (Index row = plan_.row_count; row < plan_.vertex_count; ++row) plan_.row_of_vertex[plan_.vertex_of_row[row]] = row;
+    }
+
     void make_runs() {
         std::uint64_t ring_entries = 0;
         std::uint32_t weighted = 0;
-        for (Block& block : plan_.blocks) {
-            block.first_run = static_cast<Index>(plan_.runs.size());
-            for (Index row = block.first_row; row < block.first_row + block.row_count; ++row) {
-                const RowClass& kind = classes_[plan_.vertex_of_row[row]];
-                if (row == block.first_row || shape_code(kind) != shape_code(classes_[plan_.vertex_of_row[row - 1]]))
-                    start_run(row, kind, ring_entries, weighted);
-                Run& run = plan_.runs.back();
-                ++run.count;
-                ring_entries += run.stride();
-                weighted += run.shape == RowShape::weighted;
+        for (std::size_t b = 0; b < plan_.blocks.size(); ++b) {
+            Index row = plan_.blocks[b].first_row;
+            plan_.blocks[b].first_run = static_cast<Index>(plan_.runs.size());
+            plan_.blocks[b].run_count = static_cast<Index>(block_groups_[b].size());
+            for (const BlockSort::Group& group : block_groups_[b]) {
+                const Run& run = plan_.runs.emplace_back(make_run(row, group, ring_entries, weighted));
+                row += run.count;
+                ring_entries += static_cast<std::uint64_t>(run.count) * run.stride();
+                if (run.shape == RowShape::weighted) weighted += run.count;
             }
-            block.run_count = static_cast<Index>(plan_.runs.size()) - block.first_run;
         }
         if (ring_entries > std::numeric_limits<std::uint32_t>::max())
             throw OutOfMemory("the limit stencils of this mesh have " + std::to_string(ring_entries) +
@@ -112,73 +197,171 @@ private:
         plan_.indices.resize(ring_entries);
     }
 
-    void start_run(Index row, const RowClass& kind, std::uint64_t ring_entries, std::uint32_t weighted) {
+    RowKind kind_of_row(Index row) const {
+        return row < plan_.fixed.end_row()    ? RowKind::fixed
+               : row < plan_.curves.end_row() ? RowKind::curve
+               : row < plan_.darts.end_row()  ? RowKind::dart
+                                              : RowKind::smooth;
+    }
+
+    Run make_run(Index row, const BlockSort::Group& group, std::uint64_t ring_entries, std::uint32_t weighted) const {
         Run run;
         run.first = row;
-        run.shape = kind.shape;
-        run.edges = kind.edges;
-        run.index_offset = kind.shape == RowShape::weighted ? weighted : static_cast<std::uint32_t>(ring_entries);
-        if (kind.shape != RowShape::weighted) run.weights = rows_.ring_weights(kind);
-        plan_.runs.push_back(run);
+        run.count = group.count;
+        run.shape = shape_of(group.code);
+        run.edges = edges_of(group.code);
+        run.index_offset = run.shape == RowShape::weighted ? weighted : static_cast<std::uint32_t>(ring_entries);
+        if (run.shape != RowShape::weighted) run.weights = rows_.ring_weights({kind_of_row(row), run.shape, run.edges});
+        return run;
     }
 
-    void fill_rings() {
-        parallel_for(
-            plan_.blocks.size(),
-            [&](std::size_t begin, std::size_t end) {
-                for (std::size_t b = begin; b < end; ++b)
-                    for (Index r = plan_.blocks[b].first_run; r < plan_.blocks[b].first_run + plan_.blocks[b].run_count; ++r) fill_run(plan_.runs[r]);
-            },
-            4);
+    template <class Walk>
+    void fill_rings(const Walk& walk) {
+        for_each_block([&](std::size_t b) {
+            for (Index r = plan_.blocks[b].first_run; r < plan_.blocks[b].first_run + plan_.blocks[b].run_count; ++r) fill_ring_run(walk, plan_.runs[r]);
+        });
     }
 
-    void fill_run(const Run& run) {
+    /// Starts to load what the rings of rows further on need: each array's place is known from the one before it.
+    void prefetch_ring(const Run& run, Index row) const {
+        const Index last = run.first + run.count - 1;
+        const auto vertex_ahead = [&](Index rows) { return plan_.vertex_of_row[std::min(row + rows, last)]; };
+        prefetch(&topology_.fan_offsets[vertex_ahead(24)]);
+        prefetch(topology_.fan_half_edges.data() + topology_.fan_offsets[vertex_ahead(16)]);
+        const Index first = topology_.fan_offsets[vertex_ahead(8)];
+        for (Index i = first; i < first + run.edges; ++i) prefetch(&topology_.face_vertices[topology_.fan_half_edges[i]]);
+    }
+
+    template <class Walk>
+    void fill_ring_run(const Walk& walk, const Run& run) {
         const int stride = run.stride();
         if (stride == 0) return;
+        const RowClass kind{kind_of_row(run.first), run.shape, run.edges};
         Index* out = plan_.indices.data() + run.index_offset;
         for (Index row = run.first; row < run.first + run.count; ++row, out += stride) {
-            const Index v = plan_.vertex_of_row[row];
-            rows_.ring_neighbours(v, classes_[v], out);
+            prefetch_ring(run, row);
+            rows_.ring_neighbours(walk, plan_.vertex_of_row[row], kind, out);
             for (int i = 0; i < stride; ++i) out[i] = plan_.row_of_vertex[out[i]];
         }
     }
 
+    /// Entries of consecutive weighted rows.
+    struct WeightedRows {
+        std::vector<std::uint32_t> sizes;
+        std::vector<Index> columns;
+        std::vector<double> weights;
+    };
+
     void fill_weighted() {
         plan_.diagonal.resize(plan_.row_count);
-        for (const Run& run : plan_.runs) {
-            if (run.shape != RowShape::weighted) {
-                std::fill_n(plan_.diagonal.begin() + run.first, run.count, run.weights.vertex);
-                continue;
-            }
-            for (Index row = run.first; row < run.first + run.count; ++row) add_weighted(row);
+        const std::size_t blocks = plan_.blocks.size(), pieces = piece_count(blocks, 4);
+        std::vector<WeightedRows> parts(pieces);
+        for_each_piece(blocks, pieces, [&](std::size_t piece, std::size_t begin, std::size_t end) {
+            LimitRows rows = rows_;
+            LimitRow row;
+            for (std::size_t b = begin; b < end; ++b)
+                for (Index r = plan_.blocks[b].first_run; r < plan_.blocks[b].first_run + plan_.blocks[b].run_count; ++r)
+                    if (plan_.runs[r].shape == RowShape::weighted) add_weighted_run(plan_.runs[r], rows, row, parts[piece]);
+        });
+        std::vector<std::size_t> first_row(pieces + 1, 0), first_entry(pieces + 1, 0);
+        for (std::size_t piece = 0; piece < pieces; ++piece) {
+            first_row[piece + 1] = first_row[piece] + parts[piece].sizes.size();
+            first_entry[piece + 1] = first_entry[piece] + parts[piece].columns.size();
         }
-    }
-
-    void add_weighted(Index row) {
-        const Index v = plan_.vertex_of_row[row];
-        const LimitRow entries = rows_.row(v);
-        for (std::size_t i = 0; i < entries.columns.size(); ++i) {
-            plan_.weighted_indices.push_back(plan_.row_of_vertex[entries.columns[i]]);
-            plan_.weighted_weights.push_back(entries.weights[i]);
-            if (entries.columns[i] == v) plan_.diagonal[row] = entries.weights[i];
-        }
-        if (plan_.weighted_indices.size() > std::numeric_limits<std::uint32_t>::max())
+        if (first_entry[pieces] > std::numeric_limits<std::uint32_t>::max())
             throw OutOfMemory("the weighted limit stencils of this mesh have more than 4294967295 entries: split the mesh into parts");
-        plan_.weighted_offsets.push_back(static_cast<std::uint32_t>(plan_.weighted_indices.size()));
+        plan_.weighted_offsets.resize(first_row[pieces] + 1);
+        plan_.weighted_indices.resize(first_entry[pieces]);
+        plan_.weighted_weights.resize(first_entry[pieces]);
+        for_each_piece(pieces, pieces, [&](std::size_t piece, std::size_t, std::size_t) {
+            const WeightedRows& part = parts[piece];
+            auto offset = static_cast<std::uint32_t>(first_entry[piece]);
+            for (std::size_t i = 0; i < part.sizes.size(); ++i) plan_.weighted_offsets[first_row[piece] + i + 1] = offset += part.sizes[i];
+            std::copy(part.columns.begin(), part.columns.end(), plan_.weighted_indices.begin() + first_entry[piece]);
+            std::copy(part.weights.begin(), part.weights.end(), plan_.weighted_weights.begin() + first_entry[piece]);
+        });
     }
 
-    void fill_scaling() {
-        plan_.scaling.assign(plan_.row_count, 0.0);
-        double bound = 1;
-        for (Index row = plan_.smooth.first_row; row < plan_.smooth.end_row(); ++row) {
+    void add_weighted_run(const Run& run, LimitRows& rows, LimitRow& entries, WeightedRows& out) {
+        for (Index row = run.first; row < run.first + run.count; ++row) {
             const Index v = plan_.vertex_of_row[row];
-            const int n = topology_.vertex_face_count[v];
-            const double lambda = options_.lambda_at(v);
+            rows.row(v, entries);
+            out.sizes.push_back(static_cast<std::uint32_t>(entries.columns.size()));
+            out.weights.insert(out.weights.end(), entries.weights.begin(), entries.weights.end());
+            for (std::size_t i = 0; i < entries.columns.size(); ++i) {
+                out.columns.push_back(plan_.row_of_vertex[entries.columns[i]]);
+                if (entries.columns[i] == v) plan_.diagonal[row] = entries.weights[i];
+            }
+        }
+    }
+
+    /// Diagonal, scaling and the bound of the spectrum, which rows of a run share unless each has its own blend ratio.
+    void fill_run_values() {
+        plan_.scaling.resize(plan_.row_count);
+        std::vector<double> bounds(plan_.blocks.size(), 1.0);
+        for_each_block([&](std::size_t b) {
+            for (Index r = plan_.blocks[b].first_run; r < plan_.blocks[b].first_run + plan_.blocks[b].run_count; ++r) {
+                const Run& run = plan_.runs[r];
+                if (run.shape != RowShape::weighted) std::fill_n(plan_.diagonal.begin() + run.first, run.count, run.weights.vertex);
+                if (run.first >= plan_.smooth.first_row) bounds[b] = std::min(bounds[b], fill_scaling(run));
+            }
+        });
+        const bool is_smooth_run_of_two =
+            std::any_of(plan_.runs.begin(), plan_.runs.end(), [&](const Run& run) { return run.first >= plan_.smooth.first_row && run.edges < 3; });
+        plan_.has_valence_2 = is_smooth_run_of_two;
+        const double bound = bounds.empty() ? 1 : *std::min_element(bounds.begin(), bounds.end());
+        plan_.lambda_min_bound = plan_.has_valence_2 && options_.scheme != Scheme::doo_sabin ? std::numeric_limits<double>::quiet_NaN() : std::max(0.0, bound);
+    }
+
+    /// Of a smooth run; returns its bound of the spectrum.
+    double fill_scaling(const Run& run) {
+        const int n = run.edges;
+        if (options_.lambda_per_vertex.empty()) {
+            std::fill_n(plan_.scaling.begin() + run.first, run.count, symmetric_scaling(options_.scheme, n, options_.lambda));
+            return lambda_min_bound(options_, n, options_.lambda);
+        }
+        double bound = 1;
+        for (Index row = run.first; row < run.first + run.count; ++row) {
+            const double lambda = options_.lambda_at(plan_.vertex_of_row[row]);
             plan_.scaling[row] = symmetric_scaling(options_.scheme, n, lambda);
-            plan_.has_valence_2 = plan_.has_valence_2 || n < 3;
             bound = std::min(bound, lambda_min_bound(options_, n, lambda));
         }
-        plan_.lambda_min_bound = plan_.has_valence_2 && options_.scheme != Scheme::doo_sabin ? std::numeric_limits<double>::quiet_NaN() : std::max(0.0, bound);
+        return bound;
+    }
+
+    /// How far each block's rows reach, in blocks: rows of a part's blocks are equally many but for the last.
+    void measure_reach() {
+        const Part& smooth = plan_.smooth;
+        std::vector<Index> reaches(smooth.block_count, 0);
+        parallel_for(
+            smooth.block_count,
+            [&](std::size_t begin, std::size_t end) {
+                for (std::size_t b = begin; b < end; ++b) reaches[b] = reach_of(plan_.blocks[smooth.first_block + b]);
+            },
+            4);
+        for (const Index reach : reaches) plan_.reach = std::max(plan_.reach, reach);
+    }
+
+    Index reach_of(const Block& block) const {
+        Index lowest = block.first_row, highest = block.first_row;
+        const auto take = [&](const Index* columns, std::size_t count) {
+            for (std::size_t i = 0; i < count; ++i) {
+                if (columns[i] < plan_.smooth.first_row || columns[i] >= plan_.smooth.end_row()) continue;
+                lowest = std::min(lowest, columns[i]);
+                highest = std::max(highest, columns[i]);
+            }
+        };
+        for (Index r = block.first_run; r < block.first_run + block.run_count; ++r) {
+            const Run& run = plan_.runs[r];
+            if (run.shape != RowShape::weighted) {
+                take(plan_.indices.data() + run.index_offset, static_cast<std::size_t>(run.count) * run.stride());
+                continue;
+            }
+            const std::uint32_t begin = plan_.weighted_offsets[run.index_offset];
+            take(plan_.weighted_indices.data() + begin, plan_.weighted_offsets[run.index_offset + run.count] - begin);
+        }
+        const auto block_of = [&](Index row) { return (row - plan_.smooth.first_row) / plan_options_.block_rows; };
+        return std::max(block_of(highest) - block_of(block.first_row), block_of(block.first_row) - block_of(lowest));
     }
 
     const PolygonMesh& mesh_;
@@ -186,7 +369,9 @@ private:
     const SchemeOptions& options_;
     const PlanOptions& plan_options_;
     LimitRows rows_;
-    std::vector<RowClass> classes_;
+    Array<std::uint32_t> codes_;  // of each vertex
+    Array<std::uint8_t> groups_;  // of each vertex
+    std::vector<std::vector<BlockSort::Group>> block_groups_;
     Plan plan_;
 };
 

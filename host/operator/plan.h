@@ -33,22 +33,23 @@ struct Part {
 };
 
 struct PlanOptions {
-    Index block_rows = 8192;           ///< rows a block holds at most: 8192 suits a CPU's cache
+    Index block_rows = 4096;           ///< rows a block holds at most: 4096 suit a CPU's cache
     std::vector<std::uint8_t> subset;  ///< empty, or 1 for each vertex that is interpolated
     std::vector<std::uint8_t> owned;   ///< empty, or 1 for each vertex that gets a row; the others are ghosts
 };
 
-/// Everything is in the plan's numbering: fixed rows, curves, darts, smooth rows, then ghosts without rows. Inside a part rows follow a Morton curve through
-/// the positions, and inside a block rows of equal shape stand together, so that sweeps find neighbours in cache and take no branch a row.
+/// Everything is in the plan's numbering: fixed rows, curves, darts, smooth rows, then ghosts without rows. Inside a part rows follow a breadth-first order of
+/// the vertices, and inside a block rows of equal shape stand together, so that sweeps find neighbours in cache and take no branch a row.
 struct Plan {
     Index vertex_count = 0, row_count = 0;
-    std::vector<Index> vertex_of_row;  ///< vertex_count: caller's vertex; ghosts at the end
-    std::vector<Index> row_of_vertex;  ///< the inverse
+    Array<Index> vertex_of_row;  ///< vertex_count: caller's vertex; ghosts at the end
+    Array<Index> row_of_vertex;  ///< the inverse
     Part fixed, curves, darts, smooth;
+    Index reach = 0;           ///< smooth rows depend on smooth rows of blocks at most so many before or after their own
     Index isolated_count = 0;  ///< the first rows of the fixed part: vertices without a face, left out of sizes and norms
     std::vector<Run> runs;
     std::vector<Block> blocks;
-    std::vector<Index> indices;                      ///< neighbours of ring rows, Run::stride() a row: edge ends, then diagonals
+    Array<Index> indices;                            ///< neighbours of ring rows, Run::stride() a row: edge ends, then diagonals
     std::vector<std::uint32_t> weighted_offsets{0};  ///< weighted_count + 1
     std::vector<Index> weighted_indices;
     std::vector<double> weighted_weights;

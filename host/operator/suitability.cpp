@@ -2,26 +2,49 @@
 #include "host/operator/suitability.h"
 
 #include <algorithm>
+#include <atomic>
+
+#include "host/parallel.h"
 
 namespace lcl {
 namespace {
 
-/// Two-colours the component of `seed` along its edges; false at an odd cycle. `members` receives the component, true or not.
-bool two_colour(const Topology& t, Index seed, std::vector<std::int8_t>& colour, std::vector<Index>& members) {
+/// The destinations of a vertex's half-edges: all of its neighbours where it is no boundary vertex.
+template <class Visit>
+bool all_of_neighbours(const Topology& t, Index v, const Visit& visit) {
+    for (Index i = t.fan_offsets[v]; i < t.fan_offsets[v + 1]; ++i)
+        if (!visit(t.destination(t.fan_half_edges[i]))) return false;
+    return true;
+}
+
+/// Some vertex counts with all of its neighbours: without one there is no component in which all count, and few meshes have one.
+template <class Counts>
+bool any_counts_with_neighbours(const Topology& t, const Counts& counts) {
+    std::atomic<bool> found{false};
+    parallel_for(t.vertex_count, [&](std::size_t begin, std::size_t end) {
+        for (Index v = static_cast<Index>(begin); v < static_cast<Index>(end) && !found; ++v)
+            if (counts(v) && all_of_neighbours(t, v, counts)) found = true;
+    });
+    return found;
+}
+
+/// Two-colours the vertices that count and are connected with `seed` by others that do; `members` receives them. False at an odd cycle or where they are not
+/// the whole component. What counts is inside the surface.
+template <class Counts>
+bool two_colour(const Topology& t, Index seed, const Counts& counts, std::vector<std::int8_t>& colour, std::vector<Index>& members) {
     bool bipartite = true;
     members.assign(1, seed);
     colour[seed] = 1;
     for (std::size_t i = 0; i < members.size(); ++i) {
         const Index v = members[i];
-        Index h = t.vertex_half_edge[v];
-        for (Index k = 0; k < t.vertex_face_count[v]; ++k, h = t.rotate(h))
-            for (const Index other : {t.destination(h), t.origin(t.previous(h))}) {
-                if (colour[other] == 0) {
-                    colour[other] = static_cast<std::int8_t>(-colour[v]);
-                    members.push_back(other);
-                }
-                bipartite = bipartite && colour[other] == -colour[v];
+        all_of_neighbours(t, v, [&](Index other) {
+            if (colour[other] == 0 && counts(other)) {
+                colour[other] = static_cast<std::int8_t>(-colour[v]);
+                members.push_back(other);
             }
+            bipartite = bipartite && colour[other] == -colour[v];  // one that does not count has no colour
+            return true;
+        });
     }
     return bipartite;
 }
@@ -37,7 +60,7 @@ std::string list(const std::vector<Index>& vertices) {
 Objection scheme_objection(const Topology& topology, const SchemeOptions& options) {
     Objection objection;
     if (options.scheme != Scheme::loop) return objection;
-    for (Index f = 0; f < topology.face_count && objection.faces.size() < 10; ++f)
+    for (Index f = 0; topology.uniform_degree != 3 && f < topology.face_count && objection.faces.size() < 10; ++f)
         if (topology.degree(f) != 3) objection.faces.push_back(f);
     if (!objection.faces.empty())
         objection.message = "face " + std::to_string(objection.faces[0]) + " has " + std::to_string(topology.degree(objection.faces[0])) +
@@ -51,12 +74,11 @@ Objection find_singular_component(const Topology& topology, const Features& feat
     const auto counts = [&](Index v) {
         return features.kind[v] == VertexKind::smooth && topology.vertex_face_count[v] == 3 && options.lambda_at(v) == 0 && (subset.empty() || subset[v]);
     };
+    if (!any_counts_with_neighbours(topology, counts)) return objection;
     std::vector<std::int8_t> colour(topology.vertex_count, 0);
     std::vector<Index> members;
     for (Index v = 0; v < topology.vertex_count; ++v) {
-        if (colour[v] != 0 || topology.is_isolated(v)) continue;
-        const bool bipartite = two_colour(topology, v, colour, members);
-        if (!bipartite || !std::all_of(members.begin(), members.end(), counts)) continue;
+        if (colour[v] != 0 || !counts(v) || !two_colour(topology, v, counts, colour, members)) continue;
         std::sort(members.begin(), members.end());
         objection.message =
             "Catmull-Clark interpolation has no unique solution here, and in general none: the closed component of vertices " + list(members) + " (" +

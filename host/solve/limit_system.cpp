@@ -1,20 +1,43 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "host/solve/limit_system.h"
 
+#include <algorithm>
+#include <limits>
+
+#include "host/parallel.h"
+
 namespace lcl {
 namespace {
 
+/// Lowest valence of the smooth vertices, 0 without any.
+int find_lowest_valence(const Topology& topology, const Features& features) {
+    constexpr int none = std::numeric_limits<int>::max();
+    const std::size_t pieces = piece_count(topology.vertex_count);
+    std::vector<int> lowest(pieces, none);
+    for_each_piece(topology.vertex_count, pieces, [&](std::size_t piece, std::size_t begin, std::size_t end) {
+        int valence = none;
+        for (std::size_t v = begin; v < end; ++v)
+            if (features.kind[v] == VertexKind::smooth) valence = std::min(valence, topology.vertex_face_count[v]);
+        lowest[piece] = valence;
+    });
+    const int valence = *std::min_element(lowest.begin(), lowest.end());
+    return valence == none ? 0 : valence;
+}
+
 void find_weakest(const Topology& topology, const Features& features, LimitSystem& system) {
-    for (Index v = 0; v < topology.vertex_count; ++v) {
-        const int n = topology.vertex_face_count[v];
-        if (features.kind[v] != VertexKind::smooth || (system.lowest_valence > 0 && n > system.lowest_valence)) continue;
-        if (n != system.lowest_valence) system.weakest.clear();
-        system.lowest_valence = n;
-        if (system.weakest.size() < 10) system.weakest.push_back(v);
-    }
+    constexpr std::size_t most = 10;
+    system.lowest_valence = find_lowest_valence(topology, features);
+    for (Index v = 0; system.lowest_valence > 0 && v < topology.vertex_count && system.weakest.size() < most; ++v)
+        if (features.kind[v] == VertexKind::smooth && topology.vertex_face_count[v] == system.lowest_valence) system.weakest.push_back(v);
 }
 
 }  // namespace
+
+Field& LimitSystem::work_field(Purpose purpose, int channels, Real real) {
+    const auto key = std::make_tuple(purpose, channels, real);
+    const auto found = work_fields.find(key);
+    return found != work_fields.end() ? found->second : work_fields.emplace(key, A->make_field(channels, real)).first->second;
+}
 
 std::unique_ptr<LimitSystem> make_limit_system(std::shared_ptr<Context> context, const PolygonMesh& mesh, const Topology& topology, const Features& features,
                                                const SchemeOptions& scheme, PlanOptions plan_options) {
@@ -24,11 +47,11 @@ std::unique_ptr<LimitSystem> make_limit_system(std::shared_ptr<Context> context,
     plan_options.block_rows = shape.block_rows;
     auto system = std::make_unique<LimitSystem>();
     system->scheme = scheme;
-    system->diagonal = bounding_box_diagonal(mesh);
+    system->diagonal = bounding_box_diagonal(mesh, topology);
     system->singular = find_singular_component(topology, features, scheme, plan_options.subset);
     find_weakest(topology, features, *system);
     auto plan = std::make_shared<const Plan>(build_plan(mesh, topology, features, scheme, plan_options));
-    system->A = std::make_unique<DeviceOperator>(std::move(context), std::move(plan), shape.group);
+    system->A = std::make_unique<DeviceOperator>(std::move(context), std::move(plan), shape);
     return system;
 }
 

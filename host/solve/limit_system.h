@@ -2,8 +2,10 @@
 // A limit operator ready to be solved with: plan, device arrays, and what is found out about it and remembered.
 #pragma once
 
+#include <map>
 #include <memory>
 #include <optional>
+#include <tuple>
 
 #include "host/apply/device_operator.h"
 #include "host/operator/suitability.h"
@@ -41,6 +43,11 @@ struct LimitSystem {
     std::optional<InverseNorm> inverse_norm;  // filled by inverse_norm_of
     std::optional<Schedule> natural, coloured;
 
+    /// Fields that solves work in, made once and kept: one a purpose and shape. Contents are undefined at first.
+    enum class Purpose { right, correction, scratch };
+    Field& work_field(Purpose purpose, int channels, Real real);
+    std::map<std::tuple<Purpose, int, Real>, Field> work_fields;
+
     const Plan& plan() const { return A->plan(); }
 };
 
@@ -48,7 +55,7 @@ struct LimitSystem {
 std::unique_ptr<LimitSystem> make_limit_system(std::shared_ptr<Context> context, const PolygonMesh& mesh, const Topology& topology, const Features& features,
                                                const SchemeOptions& scheme, PlanOptions plan_options);
 
-/// Bounds and estimates lambda_min by a short Lanczos run on the device: some 20 passes at the first call.
+/// Bounds and estimates lambda_min by a short Lanczos run on the device: some 20 passes at the first call, over the weakest part alone of a large mesh.
 const Spectrum& spectrum_of(LimitSystem& system);
 
 /// 1/min(2 a_ii - 1) where the smooth rows are diagonally dominant, else the block Hager-Higham estimate (Higham & Tisseur 2000), some ten short solves at the

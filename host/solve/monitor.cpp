@@ -31,8 +31,26 @@ void Monitor::begin_with(const ResidualNorms& residual) {
 }
 
 void Monitor::replace_last(const ResidualNorms& residual) {
-    history_.resize(std::max<std::size_t>(1, history_.size()));
+    const bool is_new = history_.size() <= static_cast<std::size_t>(iteration_);
+    history_.resize(iteration_ + 1);
     if (iteration_ > 0 || exact_start_ < 0) history_.back() = residual.position;
+    if (is_new) report(residual);
+}
+
+bool Monitor::stop_after(const std::vector<ResidualNorms>& residuals) {
+    bool is_over = false;
+    for (const ResidualNorms& residual : residuals) {
+        is_over = is_over || stop(residual);
+        history_.resize(iteration_ + 1);
+        history_.back() = iteration_ == 0 && exact_start_ >= 0 ? exact_start_ : residual.position;
+        advance();
+    }
+    return is_over;
+}
+
+void Monitor::report(const ResidualNorms& residual) const {
+    if (progress_ && !progress_(iteration_, residual.position, target_.position))
+        throw Cancelled("the solve was cancelled after " + std::to_string(iteration_) + " iterations");
 }
 
 bool Monitor::has_stalled(double size) {
@@ -48,8 +66,7 @@ bool Monitor::stop(const ResidualNorms& residual) {
     history_.back() = iteration_ == 0 && exact_start_ >= 0 ? exact_start_ : residual.position;
     const double size = residual.position + residual.others;
     if (first_ < 0) first_ = size;
-    if (progress_ && !progress_(iteration_, residual.position, target_.position))
-        throw Cancelled("the solve was cancelled after " + std::to_string(iteration_) + " iterations");
+    report(residual);
     const auto end = [&](Outcome outcome) {
         outcome_ = outcome;
         return true;

@@ -36,6 +36,8 @@ public:
     void begin_stage(Target target, int limit = -1);
     /// Takes the residual of the iterate after iteration() iterations; true if the stage is over, and outcome() says why.
     bool stop(const ResidualNorms& residual);
+    /// The same for the residuals of consecutive iterates that were made in one go, the last of which led to the iterate that there is now.
+    bool stop_after(const std::vector<ResidualNorms>& residuals);
     /// The residual of P_0, where a direct solve of corners and curves comes before the iterations: it counts as the first of them, unless their number is
     /// exact.
     void begin_with(const ResidualNorms& residual);
@@ -52,10 +54,14 @@ public:
     const Target& target() const { return target_; }
     /// E_0 .. E_iteration, normalised.
     const std::vector<double>& history() const { return history_; }
-    /// Replaces the last entry by a residual that is known better.
+    /// Sets the last entry to a residual that is known better.
     void replace_last(const ResidualNorms& residual);
+    /// Iterations that the stage may still make, and what it is to reach.
+    int remaining() const { return limit_ - iteration_; }
+    const Target& stage_target() const { return stage_; }
 
 private:
+    void report(const ResidualNorms& residual) const;
     bool has_stalled(double size);
 
     int max_iterations_, limit_ = 0, iteration_ = 0;

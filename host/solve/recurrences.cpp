@@ -10,6 +10,7 @@ namespace lcl {
 namespace {
 
 constexpr double negligible = 1e-28;  // of the first <r, r>_D
+constexpr int longest_chain = 64;     // sweeps between two looks at the residuals
 
 }  // namespace
 
@@ -36,22 +37,44 @@ void iterate_gauss_seidel(DeviceOperator& A, const Schedule& schedule, const Fie
 
 // x_1 = x_0 + r_0 / theta; x_(k+1) = x_k + rho_k rho_(k-1) (x_k - x_(k-1)) + 2 rho_k / delta r_k, rho_k = 1 / (2 theta / delta - rho_(k-1)), rho_0 = delta /
 // theta
-void iterate_chebyshev(DeviceOperator& A, const Part& part, double low, const Field& m, Field& x, Monitor& monitor) {
-    const double theta = (1 + low) / 2, delta = std::max((1 - low) / 2, 1e-12);
-    double rho = delta / theta;
-    Field y = A.make_field(x.channels(), x.real());
-    y.copy_from(x);
-    A.sweep({1, 1 / theta, 0, 0}, m, x, nullptr, y, part);
-    if (monitor.stop(A.norms(x, part))) return;
-    for (;;) {
-        std::swap(x, y);  // x: x_k, y: x_(k-1), which the next sweep overwrites
-        monitor.advance();
-        const double before = rho;
-        rho = 1 / (2 * theta / delta - before);
-        // The residual of x_k comes with the sweep to x_(k+1): when it is small enough, x_k is the answer and still there.
-        A.sweep({1 + rho * before, 2 * rho / delta, 0, -rho * before}, m, x, &y, y, part);
-        if (monitor.stop(A.norms(x, part))) return;
+Sweep ChebyshevSweeps::next() {
+    if (rho_ == 0) {
+        rho_ = delta_ / theta_;
+        return {1, 1 / theta_, 0, 0};
     }
+    const double before = rho_;
+    rho_ = 1 / (2 * theta_ / delta_ - before);
+    return {1 + rho_ * before, 2 * rho_ / delta_, 0, -rho_ * before};
+}
+
+// |r_k| / |r_0| <= 1 / T_k(theta / delta)
+int ChebyshevSweeps::count_for(double gain) const {
+    return gain >= 1 ? 0 : static_cast<int>(std::min(std::ceil(std::acosh(1 / gain) / std::acosh(theta_ / delta_)), 1e6));
+}
+
+// q = (theta - sqrt(theta^2 - delta^2)) / delta
+double ChebyshevSweeps::rate() const { return (theta_ - std::sqrt(theta_ * theta_ - delta_ * delta_)) / delta_; }
+
+void iterate_chebyshev(DeviceOperator& A, const Part& part, double low, const ResidualNorms& start, const Field& m, Field& x, Field& y, Monitor& monitor) {
+    ChebyshevSweeps sweeps(low);
+    y.copy_from(x);
+    const auto gain_from = [&](const ResidualNorms& e) {
+        const auto share = [](double target, double size) { return size > target ? target / size : 1.0; };
+        return std::min(share(monitor.stage_target().position, e.position), share(monitor.stage_target().others, e.others));
+    };
+    int wanted = std::max(1, sweeps.count_for(gain_from(start)));
+    while (wanted > 0 && monitor.remaining() > 0) {
+        std::vector<Sweep> chain(std::min({wanted, monitor.remaining(), longest_chain}));
+        for (Sweep& sweep : chain) sweep = sweeps.next();
+        const std::vector<ResidualNorms> norms = A.chain(chain, m, x, y, part);
+        if (monitor.stop_after(norms)) return;
+        // The last norm is that of the iterate before the newest, which is one sweep better.
+        const double gain = gain_from(norms.back());
+        wanted = gain > 0 ? static_cast<int>(std::min(std::ceil(std::log(gain) / std::log(sweeps.rate())), 1e6)) - 1 : longest_chain;
+    }
+    if (monitor.remaining() > 0) return monitor.set_outcome(Outcome::converged);
+    A.sweep({0, 1, 0, 0}, m, x, nullptr, y, part);
+    monitor.stop(A.norms(x, part));
 }
 
 void iterate_conjugate_gradients(DeviceOperator& A, const Part& part, const Field& m, Field& x, Monitor& monitor, LanczosCoefficients* coefficients) {

@@ -2,6 +2,7 @@
 // The iterations for A x = m on a device, each until the monitor stops it. Residual r_k = m - A x_k; x_0 is what x holds.
 #pragma once
 
+#include <algorithm>
 #include <vector>
 
 #include "host/apply/device_operator.h"
@@ -15,8 +16,23 @@ void iterate_stationary(DeviceOperator& A, const Part& part, double weight, bool
 /// GS-PIA over a schedule (Loop PIA paper, eq. 7). Two passes an iteration: the second measures the residual.
 void iterate_gauss_seidel(DeviceOperator& A, const Schedule& schedule, const Field& m, Field& x, Monitor& monitor);
 
-/// Chebyshev semi-iteration for a spectrum in [low, 1], three-term form. Eigenvalues between 0 and low converge too, only slower. One pass an iteration.
-void iterate_chebyshev(DeviceOperator& A, const Part& part, double low, const Field& m, Field& x, Monitor& monitor);
+/// The sweeps of the Chebyshev semi-iteration for a spectrum in [low, 1], three-term form. Eigenvalues between 0 and low converge too, only slower.
+class ChebyshevSweeps {
+public:
+    explicit ChebyshevSweeps(double low) : theta_((1 + low) / 2), delta_(std::max((1 - low) / 2, 1e-12)) {}
+    Sweep next();
+    /// Sweeps after which no residual of the spectrum is larger than `gain` times the first.
+    int count_for(double gain) const;
+    /// What one more sweep gains in the long run.
+    double rate() const;
+
+private:
+    double theta_, delta_, rho_ = 0;
+};
+
+/// Chebyshev, as many sweeps in one go as its rate asks for from the residual `start` of x to the stage's target; one pass a sweep. Outcome::converged says
+/// that the target should be met: the caller makes sure. y: another field of x's shape, overwritten.
+void iterate_chebyshev(DeviceOperator& A, const Part& part, double low, const ResidualNorms& start, const Field& m, Field& x, Field& y, Monitor& monitor);
 
 /// Coefficients of conjugate gradients, an entry an iteration, a value a channel: what a Lanczos estimate of the spectrum is made of.
 struct LanczosCoefficients {

@@ -15,6 +15,8 @@ namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 constexpr double stage_gain = 1e-4;       // what one stage of float sweeps on a correction gains at most: well above float's floor
+constexpr double float_reach = 5e-7;      // residuals, normalised, that float sweeps on the values themselves are sure to reach
+constexpr Index sampled_share = 16;       // of the blocks: what the first residual is taken from
 constexpr double wide_floor = 1e-13;      // residuals of wide fields, normalised, are rounding below
 constexpr double chebyshev_least = 0.02;  // below, conjugate gradients adapt better than an interval does
 constexpr double estimate_margin = 0.95;  // Ritz values lie above lambda_min
@@ -52,13 +54,24 @@ public:
         if (first_iterated_row() > plan.curves.first_row) solve_curves(plan, m, p, channels);
     }
 
-    void run(const Field& m, Field& x) {
-        if (is_refused()) return measure(m, x);
-        if (is_done_at_once(m, x)) return;
-        if (part_.row_count == 0) return count_idle_sweeps(m, x);
-        if (x.real() == Real::wide) iterate_mixed(m, x);
-        else iterate(m, x);
-        A_.context().finish();
+    /// The residual of what x then holds, in double or pairs of floats, over all rows.
+    ResidualNorms run(const Field& m, Field& x) {
+        fields_are_float_ = x.real() == Real::single;
+        const ResidualNorms start = first_residual(m, x);
+        if (is_refused()) return measure(start);
+        if (is_done_at_once(start)) return start;
+        if (part_.row_count == 0) return count_idle_sweeps(start);
+        return x.real() == Real::full ? iterate_double(start, m, x) : iterate_corrections(start, m, x);
+    }
+
+    /// Leaves m - A x in the field `right`.
+    ResidualNorms residual(const Field& m, const Field& x) {
+        const Part all = system_.plan().all_rows();
+        const bool is_full = x.real() == Real::full;
+        Field& r = work(LimitSystem::Purpose::right, x, is_full ? Real::full : Real::single);
+        if (is_full) A_.sweep({0, 1, 0, 0}, m, x, nullptr, r, all);
+        else A_.wide_residual(m, x, r, all);
+        return A_.norms(r, all);
     }
 
     /// Fills what the monitor knows.
@@ -115,66 +128,99 @@ private:
     }
 
     /// Only the residual of what there is.
-    void measure(const Field& m, const Field& x) {
+    ResidualNorms measure(const ResidualNorms& norms) {
         monitor_->begin_stage({}, 0);
-        monitor_->stop(residual(m, x));
+        monitor_->stop(norms);
         monitor_->set_outcome(Outcome::exhausted);
+        return norms;
     }
 
     /// Corners and curves are all there is, and they are solved.
-    void count_idle_sweeps(const Field& m, const Field& x) {
-        const ResidualNorms norms = residual(m, x);
+    ResidualNorms count_idle_sweeps(const ResidualNorms& norms) {
         for (monitor_->begin_stage({}); !monitor_->stop(norms);) monitor_->advance();
+        return norms;
     }
 
-    bool is_done_at_once(const Field& m, const Field& x) {
-        if (options_.exact_sweeps > 0) return false;
+    bool is_done_at_once(const ResidualNorms& start) {
+        if (options_.exact_sweeps > 0 || !monitor_->target().met_by(start)) return false;
         monitor_->begin_stage(monitor_->target(), 0);
-        monitor_->stop(residual(m, x));
-        return monitor_->outcome() == Outcome::converged;
+        return monitor_->stop(start);
     }
 
-    ResidualNorms residual(const Field& m, const Field& x) {
-        const Part all = system_.plan().all_rows();
-        if (x.real() == Real::wide) {
-            if (!correction_right_) correction_right_ = std::make_unique<Field>(A_.make_field(x.channels(), Real::single));
-            A_.wide_residual(m, x, *correction_right_, all);
-            return A_.norms(*correction_right_, all);
+    Field& work(LimitSystem::Purpose purpose, const Field& like, Real real) { return system_.work_field(purpose, like.channels(), real); }
+
+    /// Only of some blocks where nothing but the number of sweeps depends on it.
+    ResidualNorms first_residual(const Field& m, const Field& x) {
+        const Index count = part_.block_count / sampled_share;
+        if (count == 0 || is_refused() || !is_direct(x, monitor_->target(), 0)) return residual(m, x);
+        Part sample = part_;
+        sample.first_block += (part_.block_count - count) / 2;
+        sample.block_count = count;
+        Field& r = work(LimitSystem::Purpose::right, x, Real::single);
+        A_.wide_residual(m, x, r, sample);
+        const ResidualNorms some = A_.norms(r, sample);
+        return monitor_->target().met_by(some) ? residual(m, x) : some;
+    }
+
+    ResidualNorms iterate_double(ResidualNorms norms, const Field& m, Field& x) {
+        for (;;) {
+            iterate(norms, monitor_->target(), m, x);
+            const ResidualNorms now = residual(m, x);
+            const bool helps = now.position + now.others < 0.5 * (norms.position + norms.others);
+            monitor_->replace_last(now);
+            if (monitor_->target().met_by(now)) monitor_->set_outcome(Outcome::converged);
+            else if (monitor_->outcome() == Outcome::converged && helps && monitor_->remaining() > 0) {
+                norms = now;
+                continue;
+            } else if (monitor_->outcome() == Outcome::converged) monitor_->set_outcome(helps ? Outcome::exhausted : Outcome::stalled);
+            return now;
         }
-        Field r = A_.make_field(x.channels(), x.real());
-        A_.sweep({0, 1, 0, 0}, m, x, nullptr, r, all);
-        return A_.norms(x, all);
     }
 
     /// Iterative refinement: r = m - A x wide, A d = r in float, x += d. The iterates are those of the plain recurrence on x, in correction form.
-    void iterate_mixed(const Field& m, Field& x) {
-        ResidualNorms norms = residual(m, x);
-        Field d = A_.make_field(x.channels(), Real::single);
-        is_correction_ = true;
+    ResidualNorms iterate_corrections(ResidualNorms norms, const Field& m, Field& x) {
         for (;;) {
             const int before = monitor_->iteration();
             const Target& target = monitor_->target();
-            stage_ = {std::max(target.position, stage_gain * norms.position), std::max(target.others, stage_gain * norms.others)};
-            if (norms.position + norms.others < wide_floor) stage_ = {};  // nothing left to refine: the last stage of an exact number of sweeps
-            d.fill_zero();
-            iterate(*correction_right_, d);
-            A_.correct(d, x, part_);
+            Target stage{std::max(target.position, stage_gain * norms.position), std::max(target.others, stage_gain * norms.others)};
+            if (norms.position + norms.others < wide_floor) stage = {};  // nothing left to refine: the last stage of an exact number of sweeps
+            if (is_direct(x, stage, before)) iterate(norms, stage, m, x);
+            else add_correction(norms, stage, x);
             const ResidualNorms now = residual(m, x);
             monitor_->replace_last(now);
-            if (target.met_by(now)) return monitor_->set_outcome(Outcome::converged);
-            if (monitor_->is_exact() && monitor_->outcome() == Outcome::converged) {
-                norms = now;
-                continue;
-            }
             const bool helps = now.position + now.others < 0.5 * (norms.position + norms.others);
-            if (monitor_->outcome() != Outcome::converged || monitor_->iteration() >= monitor_->max_iterations()) return;
-            if (!helps || monitor_->iteration() == before) return monitor_->set_outcome(Outcome::stalled);
             norms = now;
+            if (target.met_by(now)) {
+                monitor_->set_outcome(Outcome::converged);
+                return now;
+            }
+            if (monitor_->is_exact() && monitor_->outcome() == Outcome::converged) continue;
+            if (monitor_->outcome() != Outcome::converged || monitor_->remaining() <= 0) return now;
+            if (!helps || monitor_->iteration() == before) {
+                monitor_->set_outcome(Outcome::stalled);
+                return now;
+            }
         }
     }
 
-    void iterate(const Field& m, Field& x) {
-        const Target target = is_correction_ ? stage_ : monitor_->target();
+    /// Float sweeps on float fields reach what is asked for, so that corrections of what they leave are not needed: Chebyshev's first stage, whose end is
+    /// measured in any case.
+    bool is_direct(const Field& x, const Target& stage, int iteration) const {
+        const bool is_chebyshev = solver_ == Solver::automatic || solver_ == Solver::chebyshev;
+        return x.real() == Real::single && is_chebyshev && iteration <= 1 && !monitor_->is_exact() && !system_.plan().has_darts() &&
+               stage.position >= float_reach && stage.others >= float_reach;
+    }
+
+    /// d with A d = r, the residual in the field `right`, and x += d.
+    void add_correction(const ResidualNorms& norms, const Target& stage, Field& x) {
+        Field& d = work(LimitSystem::Purpose::correction, x, Real::single);
+        d.fill_zero();
+        iterate(norms, stage, work(LimitSystem::Purpose::right, x, Real::single), d);
+        A_.correct(d, x, part_);
+    }
+
+    /// One stage from the residual `start` of x.
+    void iterate(const ResidualNorms& start, Target target, const Field& m, Field& x) {
         monitor_->begin_stage(target);
         switch (solver_) {
             case Solver::pia: return iterate_stationary(A_, part_, 1, false, m, x, *monitor_);
@@ -184,19 +230,19 @@ private:
             case Solver::gauss_seidel_coloured: return iterate_gauss_seidel(A_, coloured(), m, x, *monitor_);
             case Solver::conjugate_gradients: return iterate_conjugate_gradients(A_, part_, m, x, *monitor_);
             case Solver::automatic:
-            case Solver::chebyshev: return iterate_guarded_chebyshev(m, x, target);
+            case Solver::chebyshev: return iterate_guarded_chebyshev(start, target, m, x);
         }
     }
 
     /// Chebyshev, and where nothing is proven (darts) PIA from there if it grows or stalls.
-    void iterate_guarded_chebyshev(const Field& m, Field& x, Target target) {
+    void iterate_guarded_chebyshev(const ResidualNorms& norms, Target target, const Field& m, Field& x) {
         const bool has_fallback = options_.solver == Solver::automatic && system_.plan().has_darts();
         std::unique_ptr<Field> start;
         if (has_fallback) {
             start = std::make_unique<Field>(A_.make_field(x.channels(), x.real()));
             start->copy_from(x);
         }
-        iterate_chebyshev(A_, part_, chebyshev_low(), m, x, *monitor_);
+        iterate_chebyshev(A_, part_, chebyshev_low(), norms, m, x, work(LimitSystem::Purpose::scratch, x, x.real()), *monitor_);
         const bool failed = monitor_->outcome() == Outcome::diverged || (monitor_->outcome() == Outcome::stalled && !monitor_->stage_has_gained());
         if (!has_fallback || !failed) return;
         solver_ = Solver::pia;
@@ -230,6 +276,7 @@ private:
     }
 
     std::string reason() const {
+        constexpr const char* not_in_float = "the values are kept in float, which cannot hold them to this tolerance: use fields of double precision";
         const std::string after = " after " + std::to_string(monitor_->iteration()) + " iterations";
         const char* other = options_.solver == Solver::automatic ? ": allow more iterations, or use a larger alpha" : ": use solver auto";
         switch (monitor_->outcome()) {
@@ -238,10 +285,11 @@ private:
                        (solver_ == Solver::jacobi ? ": Jacobi is sure to converge only under diagonal dominance (lambda of 1/3 or more), use auto" : other);
             case Outcome::stalled:
                 if (monitor_->history().back() < wide_floor) return "the tolerance lies below what the arithmetic reaches" + after + ": use a larger one";
+                if (options_.precision == Precision::mixed && fields_are_float_) return not_in_float;
                 return "the residual no longer falls" + after + (options_.precision == Precision::single ? ": single precision ends here, use mixed" : other);
             case Outcome::indefinite:
                 return "a negative eigenvalue was met, the limit operator is indefinite: use a larger alpha (0.5; alpha auto does so) or a lambda above 0";
-            case Outcome::converged: return "the values are kept in float, which cannot hold them to this tolerance: use fields of double precision";
+            case Outcome::converged: return not_in_float;
             case Outcome::exhausted: break;
         }
         return "the tolerance was not reached" + after + other;
@@ -253,10 +301,8 @@ private:
     const double unit_;  // model units of 1 in the fields
     Solver solver_ = Solver::automatic;
     Part part_;
-    Target stage_;
-    bool is_correction_ = false;
+    bool fields_are_float_ = false;
     std::unique_ptr<Monitor> monitor_;
-    std::unique_ptr<Field> correction_right_;
     SolveReport report_;
 };
 
@@ -274,25 +320,6 @@ double error_bound(LimitSystem& system, double max_error) {
 void certify(LimitSystem& system, const SolveOptions& options, SolveReport& report) {
     const bool has_inverse = report.status == SolveStatus::converged || report.status == SolveStatus::not_converged;
     if (options.certify && has_inverse) report.surface_error_bound = error_bound(system, report.max_error);
-}
-
-Field widened(DeviceOperator& A, const Field& field) {
-    Field wide = A.make_field(field.channels(), Real::wide);
-    wide.fill_zero();
-    A.correct(field, wide, {0, field.rows(), 0, 0});
-    return wide;
-}
-
-/// Residual of what the fields hold, in double or pairs whatever their precision.
-ResidualNorms device_residual(DeviceOperator& A, const Field& m, const Field& x) {
-    const Part all = A.plan().all_rows();
-    Field r = A.make_field(x.channels(), x.real());
-    if (x.real() == Real::single) {
-        A.wide_residual(widened(A, m), widened(A, x), r, all);
-        return A.norms(r, all);
-    }
-    A.sweep({0, 1, 0, 0}, m, x, nullptr, r, all);
-    return A.norms(x, all);
 }
 
 void refuse_ghosts(const Plan& plan) {
@@ -346,24 +373,17 @@ SolveReport solve_fields(LimitSystem& system, const Field& M, const Transform& t
     Solve solve(system, options, 1 / transform.scale[0]);
     if (!warm_start) P.copy_from(M);
     if (solve.first_iterated_row() > plan.isolated_count) {
-        solve.monitor().begin_with(device_residual(*system.A, M, P));
+        solve.monitor().begin_with(solve.residual(M, P));
         std::vector<double> m(static_cast<std::size_t>(solve.first_iterated_row()) * M.channels());
         M.download(m.data(), 0, solve.first_iterated_row());
         std::vector<double> p = m;
         solve.solve_directly(m, p, M.channels());
         P.upload(p.data(), 0, solve.first_iterated_row());
     }
-    if (options.precision == Precision::mixed && M.real() == Real::single) {
-        const Field m = widened(*system.A, M);
-        Field p = widened(*system.A, P);
-        solve.run(m, p);
-        system.A->narrow(p, P);
-    } else {
-        solve.run(M, P);
-    }
+    const ResidualNorms final_norms = solve.run(M, P);
     SolveReport& report = solve.conclude();
     report.seconds_solve = seconds_since(start);
-    solve.judge(device_residual(*system.A, M, P));
+    solve.judge(final_norms);
     certify(system, options, report);
     return report;
 }

@@ -41,6 +41,7 @@ struct SolveReport {
     std::string message;
     std::vector<Index> vertices;
     double seconds_upload = 0, seconds_solve = 0, seconds_download = 0;
+    Index changed_rows = 0;  ///< of P, by a local solve
 };
 
 /// P with A P = M through host memory. M: vertex_count rows of `channels`, stride apart. P: P_0 where warm_start, else written only; P may be M.

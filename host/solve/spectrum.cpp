@@ -3,6 +3,7 @@
 #include <cmath>
 #include <limits>
 
+#include "host/operator/excerpt.h"
 #include "host/solve/limit_system.h"
 #include "host/solve/recurrences.h"
 
@@ -13,6 +14,8 @@ constexpr int lanczos_steps = 16;
 constexpr int lanczos_steps_unproven = 48;  // valence 2: negative eigenvalues are looked for
 constexpr int lanczos_steps_most = 256;
 constexpr double rounding = 2e-5;  // of a Ritz value from float sweeps
+constexpr Index sample_least = 65536;  // rows; of larger meshes this many or a share are looked at, round the weakest place
+constexpr Index sample_share = 16;     // wide enough for waves across the levels of a breadth-first order
 
 /// Numbers in [-1, 1) that are the same in every run: a start vector with a part of every eigenvector.
 std::vector<double> rough_vector(std::size_t size) {
@@ -50,6 +53,15 @@ double lanczos_estimate(DeviceOperator& A, int steps) {
         if (has_ended || steps >= lanczos_steps_most || smallest_ritz_value(coefficients, steps * 3 / 4) - value <= 0.05 * std::fabs(value))
             return std::min(1.0, value);
     }
+}
+
+/// The same for the weakest part of a large mesh: an upper estimate still, since parts have no smaller eigenvalues than the whole.
+double sampled_estimate(DeviceOperator& A, int steps) {
+    const Plan& plan = A.plan();
+    const Part sample = weakest_blocks(plan, std::max(sample_least, plan.smooth.row_count / sample_share));
+    if (2 * sample.row_count >= plan.smooth.row_count) return lanczos_estimate(A, steps);
+    DeviceOperator part(A.shared_context(), std::make_shared<const Plan>(excerpt(plan, sample.first_block, sample.block_count)), A.launch_shape());
+    return lanczos_estimate(part, steps);
 }
 
 /// Curve rows (L + 4 V + R)/6 have spectrum in [1/3, 1], Doo-Sabin's (L + 6 V + R)/8 in [1/2, 1].
@@ -101,7 +113,7 @@ const Spectrum& spectrum_of(LimitSystem& system) {
     const double curves = curve_bound(system);
     spectrum.bound = plan.has_darts() || !proven ? nan : std::min(plan.lambda_min_bound, curves);
     if (system.singular.message.empty()) {
-        spectrum.smooth = lanczos_estimate(*system.A, proven ? lanczos_steps : lanczos_steps_unproven);
+        spectrum.smooth = sampled_estimate(*system.A, proven ? lanczos_steps : lanczos_steps_unproven);
         if (proven) spectrum.smooth = std::max(spectrum.smooth, plan.lambda_min_bound);
     }
     spectrum.estimate = plan.has_darts() ? nan : std::min(spectrum.smooth, curves);

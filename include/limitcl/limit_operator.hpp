@@ -47,7 +47,7 @@ public:
     SchemeOptions scheme() const;
     /// Row of a vertex: columns in ascending order with their weights, double.
     std::vector<std::pair<std::int32_t, double>> row(int vertex) const;
-    /// Some 20 passes over A at the first call, then remembered.
+    /// Some 20 passes over A at the first call, less on large meshes, then remembered.
     Diagnosis diagnose() const;
     /// A few solves at the first call where no bound is known. Error LCL_ERROR_UNSUPPORTED with darts.
     InverseNorm inverse_norm() const;

@@ -49,6 +49,7 @@ struct SolveReport {
     double seconds_upload = 0, seconds_solve = 0, seconds_download = 0;
     std::vector<std::int32_t> vertices;  ///< where it is singular or indefinite
     std::string message;                 ///< one sentence if not converged; "" otherwise
+    int changed_rows = 0;                ///< solve_local: rows of P that were changed, all where the full solve took over; 0 from others
 
     /// Throws Error with status and message unless the status is LCL_OK.
     const SolveReport& require_ok() const;
@@ -115,6 +116,22 @@ private:
 [[nodiscard]] inline SolveReport interpolate(const LimitOperator& A, const Field& M, Field& P, const SolveOptions& options = {}) {
     detail::SolveCall call(options);
     return call.finish(lcl_interpolate_field(A.get(), M.get(), call.options(), P.get(), call.report()));
+}
+
+/// Moves few vertices of a surface that interpolates: M gets the new rows (vertices.size() x channels, model units; each vertex once) and P, which solved A P =
+/// M before, is updated to the tolerance in time that follows the edit. See lcl_solve_local.
+///     interpolate(A, M, P).require_ok();
+///     const std::int32_t vertex[] = {4711};
+///     const double point[] = {0.1, 0.2, 0.3};
+///     solve_local(A, M, P, vertex, point).require_ok();
+[[nodiscard]] inline SolveReport solve_local(const LimitOperator& A, Field& M, Field& P, ArrayView<std::int32_t> vertices, ArrayView<double> values,
+                                             const SolveOptions& options = {}) {
+    const std::size_t expected = vertices.size() * static_cast<std::size_t>(M.channels());
+    if (values.size() != expected)
+        throw Error(LCL_ERROR_INVALID_ARGUMENT,
+                    std::to_string(values.size()) + " values were given, " + std::to_string(vertices.size()) + " rows need " + std::to_string(expected));
+    detail::SolveCall call(options);
+    return call.finish(lcl_solve_local(A.get(), M.get(), P.get(), vertices.data(), vertices.size(), values.data(), call.options(), call.report()));
 }
 
 /// A solve on a thread of its own. Holds its options and report; M and P must live until wait() has returned or the object is gone.
@@ -197,6 +214,7 @@ inline SolveReport detail::SolveCall::finish(lcl_status status) {
     report.seconds_download = report_.seconds_download;
     report.vertices.assign(report_.vertices, report_.vertices + report_.vertex_count);
     report.message = report_.message;
+    report.changed_rows = report_.changed_rows;
     return report;
 }
 
