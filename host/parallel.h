@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cstddef>
 #include <exception>
-#include <system_error>
 #include <thread>
 #include <vector>
 
@@ -38,7 +37,7 @@ void for_each_piece(std::size_t count, std::size_t pieces, const Body& body) {
     std::size_t started = 1;
     try {
         for (; started < pieces; ++started) threads.emplace_back(run, started);
-    } catch (const std::system_error&) {  // no more threads to be had: the rest runs here
+    } catch (...) {  // no more threads to be had: the rest runs here
     }
     run(0);
     for (std::size_t piece = started; piece < pieces; ++piece) run(piece);

@@ -52,8 +52,6 @@ typedef struct {
 typedef LCL_VECTOR(float) floatn;
 typedef LCL_REAL real; /* norms */
 
-/// Coefficients of the sweeps of a chain: a, b, b_jacobi, c each.
-typedef struct { real value[4 * LCL_CHAIN]; } lcl_chain;
 
 #ifdef LCL_HAS_DOUBLE
 typedef LCL_VECTOR(double) sumn; /* sums over many rows */

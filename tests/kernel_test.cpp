@@ -20,6 +20,7 @@ struct Launching {
     int group;
     Index block_rows;
     std::size_t cache_bytes = 0;
+    Index phase_blocks = 1;
 };
 
 struct Case {
@@ -188,6 +189,7 @@ public:
     /// Three sweeps in one go are three sweeps one after the other.
     void check_chain() {
         const std::vector<Sweep> sweeps{{0.75, 1.25, 0.25, -0.5}, {0.5, 0.75, 0, 0.25}, {1, 0.5, 0, -0.25}};
+        if (launching_.phase_blocks > 1) CHECK(plan_->reach > 1);
         if (launching_.cache_bytes > 0) CHECK(A_.phases(sweeps.size(), field(x_), plan_->smooth).width < plan_->smooth.block_count);
         for (const Part& part : {all(), plan_->smooth}) {
             const Field m = field(m_);
@@ -215,7 +217,9 @@ public:
     }
 
 private:
-    static LaunchShape launch_shape_of(const Launching& launching) { return {launching.group, launching.block_rows, launching.cache_bytes, 1}; }
+    static LaunchShape launch_shape_of(const Launching& launching) {
+        return {launching.group, launching.block_rows, launching.cache_bytes, launching.phase_blocks};
+    }
     static std::shared_ptr<const Plan> make_plan(const Case& c, const Launching& launching) {
         PlanOptions options;
         options.block_rows = launching.block_rows;
@@ -410,6 +414,7 @@ TEST_CASE("kernels equal plain loops on 100 000 rows", "[kernel]") {
         check(device_context(), c, {16, 1024}, 3, Real::single);
         check(device_context(), c, {1, 8192}, 3, Real::wide);
         for (const int channels : {3, 5}) check(device_context(), c, {1, 512, 2000000}, channels, Real::single);  // sweeps that follow each other
+        check(device_context(), c, {1, 128, 2000000, 8}, 19, Real::single);                                       // several blocks a phase, reach above 1
     }
 }
 

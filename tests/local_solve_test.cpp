@@ -32,9 +32,9 @@ Eigen::MatrixXd matrix_of(lcl_operator A) {
 }
 
 /// A mesh whose points M are kept beside the device, with P solved for.
-class Session {
+class Editing {
 public:
-    explicit Session(const shapes::Shape& shape, const lcl_scheme_options* scheme = nullptr, lcl_precision precision = LCL_PRECISION_DOUBLE, int channels = 3)
+    explicit Editing(const shapes::Shape& shape, const lcl_scheme_options* scheme = nullptr, lcl_precision precision = LCL_PRECISION_DOUBLE, int channels = 3)
         : channels_(channels),
           rows_(shape.mesh.vertex_count),
           diagonal_(diagonal_of(shape)),
@@ -157,37 +157,37 @@ TEST_CASE("a local solve meets the tolerance in every row, and the bound that fo
     for (const Case& c : cases())
         for (const lcl_precision precision : {LCL_PRECISION_DOUBLE, LCL_PRECISION_MIXED}) {
             CAPTURE(c.name, precision);
-            Session session(c.shape, &c.scheme, precision);
-            const double inverse_norm = oracle::infinity_norm(matrix_of(session.A()).inverse()), limit = tolerance * session.diagonal() * (1 + 1e-9);
+            Editing editing(c.shape, &c.scheme, precision);
+            const double inverse_norm = oracle::infinity_norm(matrix_of(editing.A()).inverse()), limit = tolerance * editing.diagonal() * (1 + 1e-9);
             shapes::Random random(21);
-            for (int32_t v = 0; v < session.rows(); v += 1 + session.rows() / 40) {
-                const lcl_solve_report report = session.edit({v}, session.moved({v}, 0.1, random));
+            for (int32_t v = 0; v < editing.rows(); v += 1 + editing.rows() / 40) {
+                const lcl_solve_report report = editing.edit({v}, editing.moved({v}, 0.1, random));
                 CHECK(report.max_error <= limit);
                 CHECK(report.residual_count == static_cast<size_t>(report.iterations) + 1);
                 CHECK(report.solver == LCL_SOLVER_GS);
             }
-            CHECK(session.residual() <= limit);
-            CHECK(session.error() <= inverse_norm * limit);
-            const std::vector<int32_t> several = some_vertices(12, session.rows(), random);
-            session.edit(several, session.moved(several, 0.01, random));
-            CHECK(session.residual() <= limit);
-            CHECK(session.error() <= inverse_norm * limit);
+            CHECK(editing.residual() <= limit);
+            CHECK(editing.error() <= inverse_norm * limit);
+            const std::vector<int32_t> several = some_vertices(12, editing.rows(), random);
+            editing.edit(several, editing.moved(several, 0.01, random));
+            CHECK(editing.residual() <= limit);
+            CHECK(editing.error() <= inverse_norm * limit);
         }
 }
 
 TEST_CASE("rows that keep their points take the new ones to the bit, however small the move", "[local][capi]") {
     for (const lcl_precision precision : {LCL_PRECISION_DOUBLE, LCL_PRECISION_MIXED}) {
-        Session session(shapes::with_isolated_vertex(shapes::rough(shapes::grid_with_creases(), 0.1, 3), 20), nullptr, precision);
+        Editing editing(shapes::with_isolated_vertex(shapes::rough(shapes::grid_with_creases(), 0.1, 3), 20), nullptr, precision);
         shapes::Random random(2);
-        const Eigen::MatrixXd a = matrix_of(session.A());
+        const Eigen::MatrixXd a = matrix_of(editing.A());
         int fixed_rows = 0;
         for (const double amplitude : {0.1, 1e-9}) {
-            std::vector<int32_t> vertices(session.rows());
+            std::vector<int32_t> vertices(editing.rows());
             std::iota(vertices.begin(), vertices.end(), 0);
-            const lcl_solve_report report = session.edit(vertices, session.moved(vertices, amplitude, random));
-            CHECK(report.max_error == Approx(session.residual()).epsilon(1e-6));  // of the values as the fields hold them
-            const std::vector<double> m = download(session.M(), session.rows()), p = session.points();
-            for (int v = 0; v < session.rows(); ++v) {
+            const lcl_solve_report report = editing.edit(vertices, editing.moved(vertices, amplitude, random));
+            CHECK(report.max_error == Approx(editing.residual()).epsilon(1e-6));  // of the values as the fields hold them
+            const std::vector<double> m = download(editing.M(), editing.rows()), p = editing.points();
+            for (int v = 0; v < editing.rows(); ++v) {
                 if (a(v, v) != 1) continue;
                 ++fixed_rows;
                 for (int c = 0; c < 3; ++c) CHECK(p[3 * v + c] == m[3 * v + c]);
@@ -200,12 +200,12 @@ TEST_CASE("rows that keep their points take the new ones to the bit, however sma
 TEST_CASE("only the surroundings of an edit change, the rest to the bit", "[local][capi]") {
     const int around = 120, along = 110;
     const lcl_precision precision = GENERATE(LCL_PRECISION_DOUBLE, LCL_PRECISION_MIXED);
-    Session session(shapes::rough(shapes::torus_quads(around, along), 0.002, 1), nullptr, precision);
-    const std::vector<double> before = session.points();
+    Editing editing(shapes::rough(shapes::torus_quads(around, along), 0.002, 1), nullptr, precision);
+    const std::vector<double> before = editing.points();
     const int32_t edited = 50 * around + 60;
     shapes::Random random(3);
-    const lcl_solve_report report = session.edit({edited}, session.moved({edited}, 0.01, random));
-    const std::vector<double> after = session.points();
+    const lcl_solve_report report = editing.edit({edited}, editing.moved({edited}, 0.01, random));
+    const std::vector<double> after = editing.points();
     std::set<int> changed;
     for (size_t i = 0; i < after.size(); ++i)
         if (after[i] != before[i]) changed.insert(static_cast<int>(i / 3));
@@ -215,25 +215,25 @@ TEST_CASE("only the surroundings of an edit change, the rest to the bit", "[loca
     int farthest = 0;
     for (const int v : changed) farthest = std::max({farthest, std::abs(v % around - edited % around), std::abs(v / around - edited / around)});
     CHECK(farthest <= 7);
-    CHECK(session.residual() <= tolerance * session.diagonal() * (1 + 1e-9));
+    CHECK(editing.residual() <= tolerance * editing.diagonal() * (1 + 1e-9));
 }
 
 TEST_CASE("errors of many edits do not add up", "[local][capi]") {
     const lcl_precision precision = GENERATE(LCL_PRECISION_DOUBLE, LCL_PRECISION_MIXED);
-    Session session(shapes::rough(shapes::icosphere_quads(2), 0.01, 1), nullptr, precision);
-    const double inverse_norm = oracle::infinity_norm(matrix_of(session.A()).inverse()), limit = tolerance * session.diagonal() * (1 + 1e-9);
+    Editing editing(shapes::rough(shapes::icosphere_quads(2), 0.01, 1), nullptr, precision);
+    const double inverse_norm = oracle::infinity_norm(matrix_of(editing.A()).inverse()), limit = tolerance * editing.diagonal() * (1 + 1e-9);
     shapes::Random random(5);
     for (int i = 0; i < 400; ++i) {
-        const std::vector<int32_t> vertices = some_vertices(1 + random.below(4), i % 2 ? session.rows() : 20, random);  // again and again the same
-        session.edit(vertices, session.moved(vertices, 0.003, random));
-        if (i % 50 == 49) CHECK(session.residual() <= limit);
+        const std::vector<int32_t> vertices = some_vertices(1 + random.below(4), i % 2 ? editing.rows() : 20, random);  // again and again the same
+        editing.edit(vertices, editing.moved(vertices, 0.003, random));
+        if (i % 50 == 49) CHECK(editing.residual() <= limit);
     }
-    CHECK(session.error() <= inverse_norm * limit);
+    CHECK(editing.error() <= inverse_norm * limit);
 }
 
 TEST_CASE("a sequence of edits gives what one solve of all gives, to the bound", "[local][capi]") {
     const shapes::Shape shape = shapes::rough(shapes::icosphere_quads(2), 0.01, 1);
-    Session one_by_one(shape), together(shape);
+    Editing one_by_one(shape), together(shape);
     const double inverse_norm = oracle::infinity_norm(matrix_of(together.A()).inverse());
     shapes::Random random(6);
     const std::vector<int32_t> vertices = some_vertices(60, together.rows(), random);
@@ -245,30 +245,30 @@ TEST_CASE("a sequence of edits gives what one solve of all gives, to the bound",
 }
 
 TEST_CASE("the full solve takes over where many vertices are moved", "[local][capi]") {
-    Session session(shapes::rough(shapes::torus_quads(120, 110), 0.002, 1));
-    std::vector<int32_t> vertices(session.rows());
+    Editing editing(shapes::rough(shapes::torus_quads(120, 110), 0.002, 1));
+    std::vector<int32_t> vertices(editing.rows());
     std::iota(vertices.begin(), vertices.end(), 0);
     shapes::Random random(7);
-    const lcl_solve_report all = session.edit(vertices, session.moved(vertices, 0.01, random));
-    CHECK(all.changed_rows == session.rows());
+    const lcl_solve_report all = editing.edit(vertices, editing.moved(vertices, 0.01, random));
+    CHECK(all.changed_rows == editing.rows());
     CHECK(all.solver == LCL_SOLVER_CHEBYSHEV);
-    CHECK(session.residual() <= tolerance * session.diagonal() * (1 + 1e-9));
-    const lcl_solve_report one = session.edit({5}, session.moved({5}, 0.01, random));
+    CHECK(editing.residual() <= tolerance * editing.diagonal() * (1 + 1e-9));
+    const lcl_solve_report one = editing.edit({5}, editing.moved({5}, 0.01, random));
     CHECK(one.changed_rows < 200);
-    CHECK(session.residual() <= tolerance * session.diagonal() * (1 + 1e-9));
+    CHECK(editing.residual() <= tolerance * editing.diagonal() * (1 + 1e-9));
 }
 
 TEST_CASE("the full solve takes over where the operator is nearly singular", "[local][capi]") {
     for (const int levels : {3, 4}) {  // too many sweeps, too many rows
         const shapes::Shape shape = shapes::rough(shapes::dual_of(shapes::icosphere(levels)), 0.001, 1);
         CAPTURE(shape.mesh.vertex_count);
-        Session session(shape);
+        Editing editing(shape);
         shapes::Random random(1);
-        const std::vector<double> value = session.moved({7}, 0.01, random);
-        const lcl_solve_report report = session.edit({7}, value);
-        CHECK(report.changed_rows == session.rows());
+        const std::vector<double> value = editing.moved({7}, 0.01, random);
+        const lcl_solve_report report = editing.edit({7}, value);
+        CHECK(report.changed_rows == editing.rows());
         CHECK(report.solver == LCL_SOLVER_CG);
-        CHECK(session.residual() <= tolerance * session.diagonal() * (1 + 1e-9));
+        CHECK(editing.residual() <= tolerance * editing.diagonal() * (1 + 1e-9));
     }
 }
 
@@ -288,13 +288,13 @@ TEST_CASE("a local solve goes on where P was no solution", "[local][capi]") {
 }
 
 TEST_CASE("nothing moves where nothing is to be done", "[local][capi]") {
-    Session session(shapes::rough(shapes::torus_quads(9, 7), 0.05, 2));
-    const std::vector<double> before = session.points(), m = download(session.M(), session.rows());
-    CHECK(session.edit({}, {}).changed_rows == 0);
-    const lcl_solve_report report = session.edit({4}, {m[12], m[13], m[14]});
+    Editing editing(shapes::rough(shapes::torus_quads(9, 7), 0.05, 2));
+    const std::vector<double> before = editing.points(), m = download(editing.M(), editing.rows());
+    CHECK(editing.edit({}, {}).changed_rows == 0);
+    const lcl_solve_report report = editing.edit({4}, {m[12], m[13], m[14]});
     CHECK(report.changed_rows == 0);
     CHECK(report.iterations == 0);
-    CHECK(session.points() == before);
+    CHECK(editing.points() == before);
 }
 
 TEST_CASE("local solves carry 1 to 9 channels", "[local][capi][channels]") {
@@ -302,68 +302,68 @@ TEST_CASE("local solves carry 1 to 9 channels", "[local][capi][channels]") {
     for (int channels = 1; channels <= 9; ++channels) {
         const lcl_precision precision = channels % 2 ? LCL_PRECISION_DOUBLE : LCL_PRECISION_MIXED;
         CAPTURE(channels);
-        Session session(shape, nullptr, precision, channels);
+        Editing editing(shape, nullptr, precision, channels);
         shapes::Random random(channels);
         const std::vector<int32_t> vertices{0, 10, 24, 31};
-        const lcl_solve_report report = session.edit(vertices, session.moved(vertices, 0.05, random));
+        const lcl_solve_report report = editing.edit(vertices, editing.moved(vertices, 0.05, random));
         CHECK(report.solver == LCL_SOLVER_GS);
         CHECK(report.channel_error <= tolerance);
         CHECK((report.channel_error > 0) == (channels > 3));
-        const std::vector<double> p = session.points(), m = download(session.M(), session.rows());
-        const double inverse_norm = oracle::infinity_norm(matrix_of(session.A()).inverse());
+        const std::vector<double> p = editing.points(), m = download(editing.M(), editing.rows());
+        const double inverse_norm = oracle::infinity_norm(matrix_of(editing.A()).inverse());
         const Eigen::MatrixXd exact =
-            oracle::solve(matrix_of(session.A()), Eigen::Map<const Eigen::Matrix<double, -1, -1, Eigen::RowMajor>>(m.data(), session.rows(), channels));
+            oracle::solve(matrix_of(editing.A()), Eigen::Map<const Eigen::Matrix<double, -1, -1, Eigen::RowMajor>>(m.data(), editing.rows(), channels));
         for (int c = 0; c < channels; ++c) {
             double worst = 0, low = m[c], high = m[c];
-            for (int v = 0; v < session.rows(); ++v) {
+            for (int v = 0; v < editing.rows(); ++v) {
                 worst = std::max(worst, std::abs(p[v * channels + c] - exact(v, c)));
                 low = std::min(low, m[v * channels + c]), high = std::max(high, m[v * channels + c]);
             }
-            CHECK(worst <= inverse_norm * tolerance * (c < 3 ? session.diagonal() : high - low) * 1.1);  // ranges are those of the first upload
+            CHECK(worst <= inverse_norm * tolerance * (c < 3 ? editing.diagonal() : high - low) * 1.1);  // ranges are those of the first upload
         }
     }
 }
 
 TEST_CASE("options of a local solve are respected", "[local][capi]") {
-    Session session(shapes::rough(shapes::icosphere_quads(2), 0.01, 1));
+    Editing editing(shapes::rough(shapes::icosphere_quads(2), 0.01, 1));
     shapes::Random random(8);
-    const std::vector<double> moved = session.moved({3}, 0.02, random);
+    const std::vector<double> moved = editing.moved({3}, 0.02, random);
     lcl_solve_options options = LCL_SOLVE_OPTIONS_INIT;
     options.solver = LCL_SOLVER_GS;
     options.tolerance = 1e-3;
-    const lcl_solve_report coarse = session.edit({3}, moved, &options);
+    const lcl_solve_report coarse = editing.edit({3}, moved, &options);
     options.tolerance = 1e-5;
-    options.diagonal = 0.01 * session.diagonal();
-    const lcl_solve_report fine = session.edit({3}, moved, &options);
-    CHECK(coarse.max_error > 1e-6 * session.diagonal());
-    CHECK(fine.max_error <= 1e-7 * session.diagonal());
-    CHECK(session.residual() <= 1e-7 * session.diagonal() * (1 + 1e-9));
+    options.diagonal = 0.01 * editing.diagonal();
+    const lcl_solve_report fine = editing.edit({3}, moved, &options);
+    CHECK(coarse.max_error > 1e-6 * editing.diagonal());
+    CHECK(fine.max_error <= 1e-7 * editing.diagonal());
+    CHECK(editing.residual() <= 1e-7 * editing.diagonal() * (1 + 1e-9));
 
     options = LCL_SOLVE_OPTIONS_INIT;
     options.max_iterations = 2;
     lcl_solve_report report = LCL_SOLVE_REPORT_INIT;
     const int32_t vertex = 9;
-    const std::vector<double> value = session.moved({vertex}, 0.05, random);
-    refuse(lcl_solve_local(session.A(), session.M(), session.P(), &vertex, 1, value.data(), &options, &report), LCL_ERROR_NOT_CONVERGED,
+    const std::vector<double> value = editing.moved({vertex}, 0.05, random);
+    refuse(lcl_solve_local(editing.A(), editing.M(), editing.P(), &vertex, 1, value.data(), &options, &report), LCL_ERROR_NOT_CONVERGED,
            "the tolerance was not reached after 2 iterations");
     CHECK(report.iterations == 2);
     CHECK(!report.converged);
-    CHECK(report.max_error > tolerance * session.diagonal());
-    session.edit({vertex}, value);  // goes on from there
-    CHECK(session.residual() <= tolerance * session.diagonal() * (1 + 1e-9));
+    CHECK(report.max_error > tolerance * editing.diagonal());
+    editing.edit({vertex}, value);  // goes on from there
+    CHECK(editing.residual() <= tolerance * editing.diagonal() * (1 + 1e-9));
 }
 
 TEST_CASE("floats that cannot hold a tolerance are named", "[local][capi]") {
-    Session session(shapes::rough(shapes::icosphere_quads(2), 0.01, 1), nullptr, LCL_PRECISION_SINGLE);
+    Editing editing(shapes::rough(shapes::icosphere_quads(2), 0.01, 1), nullptr, LCL_PRECISION_SINGLE);
     shapes::Random random(9);
     lcl_solve_options options = LCL_SOLVE_OPTIONS_INIT;
     options.tolerance = 1e-12;
     const int32_t vertex = 9;
     lcl_solve_report report = LCL_SOLVE_REPORT_INIT;
-    lcl_solve_local(session.A(), session.M(), session.P(), &vertex, 1, session.moved({vertex}, 0.05, random).data(), &options, &report);
+    lcl_solve_local(editing.A(), editing.M(), editing.P(), &vertex, 1, editing.moved({vertex}, 0.05, random).data(), &options, &report);
     CHECK(!report.converged);
     CHECK_THAT(report.message, Catch::Matchers::Contains("the values are kept in float"));
-    CHECK(report.max_error < 1e-6 * session.diagonal());
+    CHECK(report.max_error < 1e-6 * editing.diagonal());
 }
 
 TEST_CASE("a local solve that is cancelled leaves both fields as they were", "[local][capi]") {
@@ -377,24 +377,24 @@ TEST_CASE("a local solve that is cancelled leaves both fields as they were", "[l
             return ++own.count <= own.stop_at;
         }
     } calls;
-    Session session(shapes::rough(shapes::icosphere_quads(2), 0.01, 1));
-    const std::vector<double> m = download(session.M(), session.rows()), p = session.points();
+    Editing editing(shapes::rough(shapes::icosphere_quads(2), 0.01, 1));
+    const std::vector<double> m = download(editing.M(), editing.rows()), p = editing.points();
     lcl_solve_options options = LCL_SOLVE_OPTIONS_INIT;
     options.progress = Calls::note;
     options.progress_user = &calls;
     calls.stop_at = 2;
     const int32_t vertex = 1;
     shapes::Random random(10);
-    const std::vector<double> value = session.moved({vertex}, 0.05, random);
-    refuse(lcl_solve_local(session.A(), session.M(), session.P(), &vertex, 1, value.data(), &options, nullptr), LCL_ERROR_CANCELLED, "after 2 iterations");
-    CHECK(download(session.M(), session.rows()) == m);
-    CHECK(session.points() == p);
+    const std::vector<double> value = editing.moved({vertex}, 0.05, random);
+    refuse(lcl_solve_local(editing.A(), editing.M(), editing.P(), &vertex, 1, value.data(), &options, nullptr), LCL_ERROR_CANCELLED, "after 2 iterations");
+    CHECK(download(editing.M(), editing.rows()) == m);
+    CHECK(editing.points() == p);
     calls = {};
     calls.stop_at = 1000;
-    const lcl_solve_report report = session.edit({vertex}, value, &options);
+    const lcl_solve_report report = editing.edit({vertex}, value, &options);
     CHECK(calls.count == report.iterations + 1);
     CHECK(calls.residual == Approx(report.max_error));
-    CHECK(calls.target == Approx(tolerance * session.diagonal()));
+    CHECK(calls.target == Approx(tolerance * editing.diagonal()));
 }
 
 TEST_CASE("singular and indefinite operators give the answers of the full solve", "[local][capi]") {
@@ -415,39 +415,39 @@ TEST_CASE("singular and indefinite operators give the answers of the full solve"
 
 TEST_CASE("wrong arguments of a local solve are refused and change nothing", "[local][capi]") {
     const shapes::Shape shape = shapes::torus_quads(9, 7);
-    Session session(shape), other(shape);
-    const std::vector<double> m = download(session.M(), session.rows()), p = session.points();
+    Editing editing(shape), other(shape);
+    const std::vector<double> m = download(editing.M(), editing.rows()), p = editing.points();
     std::vector<int32_t> vertices{4, 63};
     std::vector<double> values(6, 0.5);
     lcl_solve_options options = LCL_SOLVE_OPTIONS_INIT;
-    const auto solve = [&](lcl_field M, lcl_field P) { return lcl_solve_local(session.A(), M, P, vertices.data(), 2, values.data(), &options, nullptr); };
+    const auto solve = [&](lcl_field M, lcl_field P) { return lcl_solve_local(editing.A(), M, P, vertices.data(), 2, values.data(), &options, nullptr); };
     const auto refused = [&](lcl_field M, lcl_field P, const std::string& part, lcl_status status = LCL_ERROR_INVALID_ARGUMENT) {
         refuse(solve(M, P), status, part);
     };
-    refused(session.M(), session.P(), "vertex 63 was given, the field has 63");
+    refused(editing.M(), editing.P(), "vertex 63 was given, the field has 63");
     CHECK(last_error_vertices() == std::vector<int32_t>{63});
     vertices = {-1, 4};
-    refused(session.M(), session.P(), "vertex -1 was given");
+    refused(editing.M(), editing.P(), "vertex -1 was given");
     vertices = {4, 4};
-    refused(session.M(), session.P(), "vertex 4 was given twice");
+    refused(editing.M(), editing.P(), "vertex 4 was given twice");
     CHECK(last_error_vertices() == std::vector<int32_t>{4});
     vertices = {4, 5};
     values[4] = std::numeric_limits<double>::quiet_NaN();
-    refused(session.M(), session.P(), "values of vertex 5 is nan in channel 1", LCL_ERROR_BAD_INPUT);
+    refused(editing.M(), editing.P(), "values of vertex 5 is nan in channel 1", LCL_ERROR_BAD_INPUT);
     values[4] = std::numeric_limits<double>::infinity();
-    refused(session.M(), session.P(), "values of vertex 5 is inf in channel 1", LCL_ERROR_BAD_INPUT);
+    refused(editing.M(), editing.P(), "values of vertex 5 is inf in channel 1", LCL_ERROR_BAD_INPUT);
     values[4] = 0.5;
-    refused(nullptr, session.P(), "M is NULL");
-    refused(session.M(), nullptr, "P is NULL");
-    refused(session.M(), session.M(), "the same field");
-    refused(other.M(), session.P(), "fields of another operator");
-    refused(session.M(), other.P(), "fields of another operator");
-    const FieldHandle empty = make_field(session.A()), two = make_field(session.A(), 2), floats = make_field(session.A(), m, LCL_PRECISION_SINGLE);
-    refused(empty.get(), session.P(), "holds no values yet");
-    refused(session.M(), two.get(), "differ in channels or precision");
-    refused(session.M(), floats.get(), "differ in channels or precision");
-    refused(session.M(), empty.get(), "kept in another centre and scale");
-    const FieldHandle float_points = make_field(session.A(), m, LCL_PRECISION_SINGLE, floats.get());
+    refused(nullptr, editing.P(), "M is NULL");
+    refused(editing.M(), nullptr, "P is NULL");
+    refused(editing.M(), editing.M(), "the same field");
+    refused(other.M(), editing.P(), "fields of another operator");
+    refused(editing.M(), other.P(), "fields of another operator");
+    const FieldHandle empty = make_field(editing.A()), two = make_field(editing.A(), 2), floats = make_field(editing.A(), m, LCL_PRECISION_SINGLE);
+    refused(empty.get(), editing.P(), "holds no values yet");
+    refused(editing.M(), two.get(), "differ in channels or precision");
+    refused(editing.M(), floats.get(), "differ in channels or precision");
+    refused(editing.M(), empty.get(), "kept in another centre and scale");
+    const FieldHandle float_points = make_field(editing.A(), m, LCL_PRECISION_SINGLE, floats.get());
     values[4] = 1e300;
     refused(floats.get(), float_points.get(), "vertex 5 in channel 1", LCL_ERROR_BAD_INPUT);
     values[4] = 0.5;
@@ -455,19 +455,19 @@ TEST_CASE("wrong arguments of a local solve are refused and change nothing", "[l
     refused(floats.get(), float_points.get(), "the fields hold floats");
     options = LCL_SOLVE_OPTIONS_INIT;
     options.solver = LCL_SOLVER_CG;
-    refused(session.M(), session.P(), "options.solver is 7, a local solve takes 0 (auto) or 4 (GS)");
+    refused(editing.M(), editing.P(), "options.solver is 7, a local solve takes 0 (auto) or 4 (GS)");
     options = LCL_SOLVE_OPTIONS_INIT;
     options.exact_sweeps = 3;
-    refused(session.M(), session.P(), "options.exact_sweeps");
+    refused(editing.M(), editing.P(), "options.exact_sweeps");
     options = LCL_SOLVE_OPTIONS_INIT;
     options.tolerance = -1;
-    refused(session.M(), session.P(), "options.tolerance");
+    refused(editing.M(), editing.P(), "options.tolerance");
     options = LCL_SOLVE_OPTIONS_INIT;
-    refuse(lcl_solve_local(nullptr, session.M(), session.P(), vertices.data(), 2, values.data(), nullptr, nullptr), LCL_ERROR_INVALID_ARGUMENT, "A is NULL");
-    refuse(lcl_solve_local(session.A(), session.M(), session.P(), nullptr, 2, values.data(), nullptr, nullptr), LCL_ERROR_INVALID_ARGUMENT, "vertices is NULL");
-    refuse(lcl_solve_local(session.A(), session.M(), session.P(), vertices.data(), 2, nullptr, nullptr, nullptr), LCL_ERROR_INVALID_ARGUMENT, "values is NULL");
-    CHECK(download(session.M(), session.rows()) == m);
-    CHECK(session.points() == p);
+    refuse(lcl_solve_local(nullptr, editing.M(), editing.P(), vertices.data(), 2, values.data(), nullptr, nullptr), LCL_ERROR_INVALID_ARGUMENT, "A is NULL");
+    refuse(lcl_solve_local(editing.A(), editing.M(), editing.P(), nullptr, 2, values.data(), nullptr, nullptr), LCL_ERROR_INVALID_ARGUMENT, "vertices is NULL");
+    refuse(lcl_solve_local(editing.A(), editing.M(), editing.P(), vertices.data(), 2, nullptr, nullptr, nullptr), LCL_ERROR_INVALID_ARGUMENT, "values is NULL");
+    CHECK(download(editing.M(), editing.rows()) == m);
+    CHECK(editing.points() == p);
 }
 
 TEST_CASE("operators with ghosts have no local solve", "[local][capi]") {

@@ -153,7 +153,9 @@ cl_kernel DeviceOperator::kernel(const char* file, const char* name, const Field
     return context_->kernel(file, name, kernel_options(*context_, field.real(), field.blocks()[block].width, shape_.group));
 }
 
-LaunchSize DeviceOperator::size(const Part& part) const { return {static_cast<std::size_t>(part.block_count) * shape_.group, static_cast<std::size_t>(shape_.group)}; }
+LaunchSize DeviceOperator::size(const Part& part) const {
+    return {static_cast<std::size_t>(part.block_count) * shape_.group, static_cast<std::size_t>(shape_.group)};
+}
 
 void DeviceOperator::limit_points(const Field& x, Field& y, const Part& part) {
     for (std::size_t b = 0; b < x.blocks().size(); ++b)
@@ -184,7 +186,9 @@ DeviceOperator::Phases DeviceOperator::phases(std::size_t sweeps, const Field& f
     const Phases one_by_one{all, all, std::min<Index>(static_cast<Index>(sweeps), LCL_CHAIN)};
     const bool is_smooth = part.first_block == plan_->smooth.first_block && part.block_count == plan_->smooth.block_count;
     if (!is_smooth || part.row_count == 0) return one_by_one;
-    const std::size_t row_bytes = 3 * field.row_bytes(0) + sizeof(Index) * plan_->indices.size() / part.row_count;
+    std::size_t widest = 0;
+    for (std::size_t b = 0; b < field.blocks().size(); ++b) widest = std::max(widest, field.row_bytes(b));
+    const std::size_t row_bytes = 3 * widest + sizeof(Index) * plan_->indices.size() / part.row_count;
     if (row_bytes * part.row_count <= shape_.cache_bytes) return one_by_one;  // all of it stays in cache
     for (Index depth = one_by_one.sweeps; depth > 1; --depth) {
         const Index width = (shape_.phase_blocks + depth - 1) / depth, lag = plan_->reach + 2 * width;
@@ -208,16 +212,16 @@ std::vector<ResidualNorms> DeviceOperator::chain(const std::vector<Sweep>& sweep
 
 void DeviceOperator::run_phases(const Phases& phases, const Sweep* sweeps, const Field& m, Field& x, Field& y, const Part& part) {
     const bool as_double = is_double(*context_, x.real());
-    RealValue chain;
-    for (Index s = 0; s < LCL_CHAIN; ++s) {
-        const Sweep sweep = s < phases.sweeps ? sweeps[s] : Sweep{};
-        chain.append(as_double, {sweep.a, sweep.b, sweep.b_jacobi, sweep.c});
-    }
+    RealValue values;
+    for (Index k = 0; k < phases.sweeps; ++k) values.append(as_double, {sweeps[k].a, sweeps[k].b, sweeps[k].b_jacobi, sweeps[k].c});
+    if (!chain_) chain_ = Buffer(context_, sizeof values.bytes, "the coefficients of a chain of sweeps");
+    // Beside the kernels' queue; the chain before has ended, since its norms were read.
+    context_->write_async(chain_, 0, values.size, values.bytes.data(), {}, "uploading the coefficients of a chain of sweeps").wait();
     const auto stride = static_cast<Index>(plan_->blocks.size());
     for (std::size_t k = 0; k < x.blocks().size(); ++k) {
         const cl_kernel relax = kernel("relax", "lcl_relax_phase", x, k);
         set_arguments(relax, 0, 0, phases.width, phases.lag, part.first_block, part.block_count, stride, blocks_, runs_, weights(x.real(), false), indices_,
-                      weighted_offsets_, weighted_indices_, weights(x.real(), true), chain, m.buffer(k), x.buffer(k), y.buffer(k), partials(x).norms[k]);
+                      weighted_offsets_, weighted_indices_, weights(x.real(), true), chain_, m.buffer(k), x.buffer(k), y.buffer(k), partials(x).norms[k]);
         enqueue_phases(phases, part, relax);
     }
 }

@@ -98,7 +98,7 @@ private:
     std::shared_ptr<Context> context_;
     std::shared_ptr<const Plan> plan_;
     LaunchShape shape_;
-    Buffer blocks_, runs_, indices_, weighted_offsets_, weighted_indices_, vertex_order_;
+    Buffer blocks_, runs_, indices_, weighted_offsets_, weighted_indices_, vertex_order_, chain_;
     std::map<std::pair<Real, bool>, Buffer> weights_;
     std::map<Real, Buffer> scaling_;
     std::map<std::pair<Real, int>, Partials> partials_;  // by type and channel count

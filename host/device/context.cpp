@@ -237,15 +237,22 @@ void Pipeline::enqueue(cl_kernel kernel, LaunchSize size) {
     const cl_command_queue queue = on_second_ ? context_.transfer_queue_ : context_.queue_;
     const Event& other = count_ == 1 ? before_[1] : before_[0];  // the second launch: what was on the kernels' queue before the first
     Event event = enqueue_on(context_, queue, kernel, size, other);
-    check(clFlush(queue), "clFlush", "starting a kernel of a pipeline");
     before_ = {before_[1], before_[2], std::move(event)};
     on_second_ = !on_second_;
     ++count_;
+    check(clFlush(queue), "clFlush", "starting a kernel of a pipeline");
+}
+
+Pipeline::~Pipeline() {
+    if (is_joined_) return;
+    clFinish(context_.transfer_queue_);
+    clFinish(context_.queue_);
 }
 
 void Pipeline::join() {
     const Event& newest_of_second = on_second_ ? before_[1] : before_[2];
-    if (count_ > 1) context_.wait_for({newest_of_second.get()});
+    if (count_ > 1 && newest_of_second.get()) context_.wait_for({newest_of_second.get()});
+    is_joined_ = true;
 }
 
 }  // namespace lcl

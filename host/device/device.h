@@ -129,8 +129,10 @@ public:
 
     const DeviceInfo& device() const { return device_; }
     cl_context get() const { return context_; }
-    cl_command_queue queue() const { return queue_; }                    ///< in order: kernels
-    cl_command_queue transfer_queue() const { return transfer_queue_; }  ///< in order, a second one: transfers that overlap with kernels
+    cl_command_queue queue() const { return queue_; }  ///< in order: kernels
+    cl_command_queue transfer_queue() const {
+        return transfer_queue_;
+    }  ///< in order, a second one: transfers that overlap with kernels, and every other launch of a Pipeline
 
     /// The kernel `name` of kernels/`file`.cl, built with `options` ("-D LCL_REAL=double ..."); built once, then from memory or from the binary cache on disk,
     /// which is keyed by device, driver, options and source. -cl-std=CL1.2 is always passed. DeviceError holds the build log.
@@ -209,6 +211,8 @@ class Pipeline {
 public:
     /// Launches begin after what is on the kernels' queue now.
     explicit Pipeline(Context& context);
+    ~Pipeline();  // waits where something has thrown before join()
+    Pipeline(const Pipeline&) = delete;
     void enqueue(cl_kernel kernel, LaunchSize size);
     /// What is put on the kernels' queue from now on waits for all launches.
     void join();
@@ -216,7 +220,7 @@ public:
 private:
     Context& context_;
     std::array<Event, 3> before_;  // of the three newest launches, oldest first
-    bool on_second_ = false;
+    bool on_second_ = false, is_joined_ = false;
     int count_ = 0;
 };
 

@@ -31,12 +31,19 @@ void grow(OwnedBytes& bytes, std::size_t capacity) {
 
 InputFile::InputFile(const std::string& path) : path_(path), descriptor_(path == "-" ? STDIN_FILENO : ::open(path.c_str(), O_RDONLY | O_CLOEXEC)) {
     struct stat status;
-    if (descriptor_ < 0 || ::fstat(descriptor_, &status) != 0) fail(path, errno);
-    if (S_ISDIR(status.st_mode)) throw FileError(path + " is a directory; name a mesh file in it");
+    if (descriptor_ < 0) fail(path, errno);
+    const int code = ::fstat(descriptor_, &status) == 0 ? 0 : errno;
+    if (code != 0 || S_ISDIR(status.st_mode)) {
+        close();
+        if (code != 0) fail(path, code);
+        throw FileError(path + " is a directory; name a mesh file in it");
+    }
     if (S_ISREG(status.st_mode) && path != "-") size_ = static_cast<std::size_t>(status.st_size);
 }
 
-InputFile::~InputFile() {
+InputFile::~InputFile() { close(); }
+
+void InputFile::close() {
     if (descriptor_ > STDIN_FILENO) ::close(descriptor_);
 }
 

@@ -31,6 +31,7 @@ private:
     bool read_pieces(char* bytes) const;
 
     std::string path_;
+    void close();
     int descriptor_;
     std::size_t size_ = 0;
 };

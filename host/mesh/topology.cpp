@@ -96,8 +96,9 @@ bool order_closed_fan(const Walk& walk, const Index* vertices, Index* fan, Index
         met |= 1u << at;
         at = following;
     }
+    if (at != 0 || met != (1u << n) - 1) return false;
     std::copy_n(ordered, n, fan);
-    return at == 0 && met == (1u << n) - 1;
+    return true;
 }
 
 template <class Walk>

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <numeric>
 
 #include "host/parallel.h"
 
@@ -101,6 +102,24 @@ std::vector<float> smoothed(const Plan& plan, const std::vector<float>& values) 
     return out;
 }
 
+/// The smooth block with the smallest value; where several have it, the one in which the values are smallest on the whole.
+Index weakest_block(const Plan& plan, const std::vector<float>& values) {
+    constexpr float same = 1e-5f;  // rounding of the means
+    Index weakest = plan.smooth.first_block;
+    float lowest = 2;
+    double lowest_mean = 2;
+    for (Index b = plan.smooth.first_block; b < plan.smooth.end_block(); ++b) {
+        const auto first = values.begin() + plan.blocks[b].first_row, last = first + plan.blocks[b].row_count;
+        const float low = *std::min_element(first, last);
+        const double mean = std::accumulate(first, last, 0.0) / plan.blocks[b].row_count;
+        if (low > lowest + same || (low > lowest - same && mean >= lowest_mean)) continue;
+        weakest = b;
+        lowest = low;
+        lowest_mean = mean;
+    }
+    return weakest;
+}
+
 }  // namespace
 
 Plan excerpt(const Plan& plan, Index first_block, Index block_count) { return Excerpt(plan, first_block, block_count).make(); }
@@ -111,10 +130,7 @@ Part weakest_blocks(const Plan& plan, Index rows) {
     std::vector<float> crowd(plan.vertex_count, 1.0f);
     std::copy(plan.diagonal.begin() + smooth.first_row, plan.diagonal.begin() + smooth.end_row(), crowd.begin() + smooth.first_row);
     for (int pass = 0; pass < 2; ++pass) crowd = smoothed(plan, crowd);
-    const auto weakest = std::min_element(crowd.begin() + smooth.first_row, crowd.begin() + smooth.end_row()) - crowd.begin();
-    const auto is_after = [](Index row, const Block& block) { return row < block.first_row; };
-    const auto begin = plan.blocks.begin() + smooth.first_block, end = begin + smooth.block_count;
-    const Index centre = static_cast<Index>(std::upper_bound(begin, end, static_cast<Index>(weakest), is_after) - plan.blocks.begin()) - 1;
+    const Index centre = weakest_block(plan, crowd);
     const Index count = std::min(smooth.block_count, rows / std::max(1, plan.blocks[smooth.first_block].row_count) + 1);
     const Index first = std::clamp(centre - count / 2, smooth.first_block, smooth.end_block() - count);
     const Block& last = plan.blocks[first + count - 1];

@@ -228,8 +228,8 @@ private:
         const auto vertex_ahead = [&](Index rows) { return plan_.vertex_of_row[std::min(row + rows, last)]; };
         prefetch(&topology_.fan_offsets[vertex_ahead(24)]);
         prefetch(topology_.fan_half_edges.data() + topology_.fan_offsets[vertex_ahead(16)]);
-        const Index first = topology_.fan_offsets[vertex_ahead(8)];
-        for (Index i = first; i < first + run.edges; ++i) prefetch(&topology_.face_vertices[topology_.fan_half_edges[i]]);
+        const Index v = vertex_ahead(8);
+        for (Index i = topology_.fan_offsets[v]; i < topology_.fan_offsets[v + 1]; ++i) prefetch(&topology_.face_vertices[topology_.fan_half_edges[i]]);
     }
 
     template <class Walk>

@@ -115,7 +115,7 @@ int LocalSolver::first_rings() const {
     const double size = std::max(norms.position / target_.position, norms.others / target_.others);
     if (!(size > 1)) return std::any_of(edited.begin(), edited.end(), [this](Index local) { return is_fixed(local); }) ? 1 : 0;
     const double root = std::sqrt(1 / std::clamp(spectrum_of(system_).smooth, least_eigenvalue, largest_eigenvalue));
-    return 1 + static_cast<int>(std::log(size) / -std::log((root - 1) / (root + 1)) * ring_share);
+    return 1 + static_cast<int>(std::min(std::log(size) / -std::log((root - 1) / (root + 1)) * ring_share, 1e6));
 }
 
 bool LocalSolver::open_rings(int rings) {

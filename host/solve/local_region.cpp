@@ -26,6 +26,7 @@ void for_each_entry(const Plan& plan, const Run& run, Index row, const Body& bod
 
 /// Once an operator.
 void LocalRegion::prepare() {
+    chunk_runs_.clear();
     for (Index r = 0, row = 0; r < static_cast<Index>(plan_.runs.size()); ++r)
         for (; row < plan_.runs[r].first + plan_.runs[r].count; row += chunk_rows) chunk_runs_.push_back(r);
     find_irregular_readers();

@@ -10,7 +10,7 @@ namespace lcl {
 namespace {
 
 constexpr double negligible = 1e-28;  // of the first <r, r>_D
-constexpr int longest_chain = 64;     // sweeps between two looks at the residuals
+constexpr int longest_chain = 16;     // sweeps between two looks at the residuals
 
 }  // namespace
 
@@ -49,6 +49,7 @@ Sweep ChebyshevSweeps::next() {
 
 // |r_k| / |r_0| <= 1 / T_k(theta / delta)
 int ChebyshevSweeps::count_for(double gain) const {
+    if (!(gain > 0)) return std::numeric_limits<int>::max();
     return gain >= 1 ? 0 : static_cast<int>(std::min(std::ceil(std::acosh(1 / gain) / std::acosh(theta_ / delta_)), 1e6));
 }
 

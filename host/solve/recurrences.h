@@ -21,7 +21,7 @@ class ChebyshevSweeps {
 public:
     explicit ChebyshevSweeps(double low) : theta_((1 + low) / 2), delta_(std::max((1 - low) / 2, 1e-12)) {}
     Sweep next();
-    /// Sweeps after which no residual of the spectrum is larger than `gain` times the first.
+    /// Sweeps after which no residual of the spectrum is larger than `gain` times the first; very many where gain is not above 0.
     int count_for(double gain) const;
     /// What one more sweep gains in the long run.
     double rate() const;

@@ -184,8 +184,12 @@ private:
             const Target& target = monitor_->target();
             Target stage{std::max(target.position, stage_gain * norms.position), std::max(target.others, stage_gain * norms.others)};
             if (norms.position + norms.others < wide_floor) stage = {};  // nothing left to refine: the last stage of an exact number of sweeps
-            if (is_direct(x, stage, before)) iterate(norms, stage, m, x);
-            else add_correction(norms, stage, x);
+            if (is_direct(x, stage, before)) {
+                iterate(norms, stage, m, x);
+                norms.position = std::max(norms.position, monitor_->history()[before]);  // of all blocks: the first one may be of a sample
+            } else {
+                add_correction(norms, stage, x);
+            }
             const ResidualNorms now = residual(m, x);
             monitor_->replace_last(now);
             const bool helps = now.position + now.others < 0.5 * (norms.position + norms.others);

@@ -13,7 +13,7 @@ namespace {
 constexpr int lanczos_steps = 16;
 constexpr int lanczos_steps_unproven = 48;  // valence 2: negative eigenvalues are looked for
 constexpr int lanczos_steps_most = 256;
-constexpr double rounding = 2e-5;  // of a Ritz value from float sweeps
+constexpr double rounding = 2e-5;      // of a Ritz value from float sweeps
 constexpr Index sample_least = 65536;  // rows; of larger meshes this many or a share are looked at, round the weakest place
 constexpr Index sample_share = 16;     // wide enough for waves across the levels of a breadth-first order
 

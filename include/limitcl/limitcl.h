@@ -118,7 +118,7 @@ typedef struct lcl_device_info {
 LCL_API int32_t lcl_device_count(void);
 LCL_API lcl_status lcl_device_get_info(int32_t index, lcl_device_info* info);
 
-typedef LCL_ENUM(lcl_log_level) { LCL_LOG_ERROR = 0, LCL_LOG_WARNING = 1, LCL_LOG_INFO = 2, LCL_LOG_DEBUG = 3 } lcl_log_level;
+typedef LCL_ENUM(lcl_log_level){LCL_LOG_ERROR = 0, LCL_LOG_WARNING = 1, LCL_LOG_INFO = 2, LCL_LOG_DEBUG = 3} lcl_log_level;
 typedef void (*lcl_log_callback)(void* user, int32_t level, const char* message);
 
 typedef struct lcl_context_options {
@@ -153,16 +153,10 @@ LCL_API lcl_status lcl_context_selftest(lcl_context context, lcl_selftest_callba
 
 /* ---------------------------------------------------------------- meshes */
 
-typedef LCL_ENUM(lcl_format) {
-    LCL_FORMAT_BY_ENDING = 0,
-    LCL_FORMAT_OBJ = 1,
-    LCL_FORMAT_OFF = 2,
-    LCL_FORMAT_PLY = 3,
-    LCL_FORMAT_STL = 4,
-    LCL_FORMAT_OM = 5
-} lcl_format;
+typedef LCL_ENUM(lcl_format){LCL_FORMAT_BY_ENDING = 0, LCL_FORMAT_OBJ = 1, LCL_FORMAT_OFF = 2,
+                             LCL_FORMAT_PLY = 3,       LCL_FORMAT_STL = 4, LCL_FORMAT_OM = 5} lcl_format;
 
-typedef LCL_ENUM(lcl_type) { LCL_TYPE_DOUBLE = 0, LCL_TYPE_FLOAT = 1 } lcl_type;
+typedef LCL_ENUM(lcl_type){LCL_TYPE_DOUBLE = 0, LCL_TYPE_FLOAT = 1} lcl_type;
 
 /** A mesh in the caller's arrays. */
 typedef struct lcl_mesh_data {
@@ -206,7 +200,7 @@ LCL_API lcl_status lcl_mesh_set_points(lcl_mesh mesh, const double* points, size
 LCL_API lcl_status lcl_mesh_set_normals(lcl_mesh mesh, const double* normals);
 
 /** Sharp features, beside the boundary. */
-typedef LCL_ENUM(lcl_boundary) {
+typedef LCL_ENUM(lcl_boundary){
     LCL_BOUNDARY_DEFAULT = 0,         /**< the file's `t interpolateboundary`, else edge-and-corner */
     LCL_BOUNDARY_EDGE_AND_CORNER = 1, /**< boundary curves; vertices with one face are corners */
     LCL_BOUNDARY_EDGE_ONLY = 2,       /**< boundary curves everywhere */
@@ -243,7 +237,7 @@ typedef struct lcl_mesh_info {
 
 /** Counts. On a mesh that is not sound, edges and what follows from them are -1 and the call still succeeds. */
 LCL_API lcl_status lcl_mesh_get_info(lcl_mesh mesh, lcl_mesh_info* info);
-typedef LCL_ENUM(lcl_histogram) { LCL_HISTOGRAM_FACE_DEGREES = 0, LCL_HISTOGRAM_VALENCES = 1 /**< edges at a vertex */ } lcl_histogram;
+typedef LCL_ENUM(lcl_histogram){LCL_HISTOGRAM_FACE_DEGREES = 0, LCL_HISTOGRAM_VALENCES = 1 /**< edges at a vertex */} lcl_histogram;
 /** Keys in ascending order with their counts; `size` receives the number of all. Valences need a sound mesh (LCL_ERROR_BAD_INPUT). */
 LCL_API lcl_status lcl_mesh_get_histogram(lcl_mesh mesh, lcl_histogram which, int32_t* keys, int32_t* counts, size_t capacity, size_t* size);
 
@@ -273,7 +267,7 @@ LCL_API lcl_status lcl_mesh_get_property(lcl_mesh mesh, int32_t index, double* v
  * hold them. */
 LCL_API lcl_status lcl_mesh_set_property(lcl_mesh mesh, const char* name, const double* values);
 
-typedef LCL_ENUM(lcl_note) {
+typedef LCL_ENUM(lcl_note){
     LCL_NOTE_WARNING = 0,           /**< sentences on what could not be kept or was doubtful, from reading, refining and writing */
     LCL_NOTE_IGNORED_TAG = 1,       /**< names of OBJ tags that were ignored */
     LCL_NOTE_UNKNOWN_STATEMENT = 2, /**< "NAME COUNT" of OBJ statements that were skipped */
@@ -284,13 +278,9 @@ LCL_API const char* lcl_mesh_note(lcl_mesh mesh, lcl_note kind, int32_t index);
 
 /* ---------------------------------------------------------------- schemes */
 
-typedef LCL_ENUM(lcl_scheme) {
-    LCL_SCHEME_DEFAULT = 0 /**< Loop if all faces are triangles, else Catmull-Clark */,
-    LCL_SCHEME_CATMULL_CLARK = 1,
-    LCL_SCHEME_LOOP = 2,
-    LCL_SCHEME_DOO_SABIN = 3
-} lcl_scheme;
-typedef LCL_ENUM(lcl_mask) { LCL_MASK_CATMULL = 0 /**< Doo-Sabin paper, chapter 4 */, LCL_MASK_CLASSIC = 1 /**< Doo & Sabin 1978 */ } lcl_mask;
+typedef LCL_ENUM(lcl_scheme){LCL_SCHEME_DEFAULT = 0 /**< Loop if all faces are triangles, else Catmull-Clark */, LCL_SCHEME_CATMULL_CLARK = 1,
+                             LCL_SCHEME_LOOP = 2, LCL_SCHEME_DOO_SABIN = 3} lcl_scheme;
+typedef LCL_ENUM(lcl_mask){LCL_MASK_CATMULL = 0 /**< Doo-Sabin paper, chapter 4 */, LCL_MASK_CLASSIC = 1 /**< Doo & Sabin 1978 */} lcl_mask;
 
 typedef struct lcl_scheme_options {
     uint32_t struct_size;
@@ -340,8 +330,8 @@ typedef struct lcl_diagnosis {
     double lambda_min_bound;    /**< proven lower bound of the smallest eigenvalue; NaN where none is known (darts, valence 2) */
     double lambda_min_estimate; /**< from a short Lanczos run on the device, never below the bound; of more than 131,072 smooth rows only a sixteenth (65,536 at
                                      least) are looked at, where small diagonal elements crowd; NaN where A is not self-adjoint (darts) */
-    int32_t singular, indefinite;
-    char reason[512]; /**< one sentence with the cure, also where A is only nearly singular (estimate below 0.05); "" if all is well */
+    int32_t singular, indefinite; /**< by exact criterion, or by the estimate */
+    char reason[512];             /**< one sentence with the cure, also where A is only nearly singular (estimate below 0.05); "" if all is well */
     int32_t vertices[10], vertex_count;
 } lcl_diagnosis;
 #define LCL_DIAGNOSIS_INIT \
@@ -349,11 +339,8 @@ typedef struct lcl_diagnosis {
 /** What can be said of the spectrum before solving. Some 20 passes at the first call, on large meshes the time of some five, then remembered. */
 LCL_API lcl_status lcl_operator_diagnose(lcl_operator A, lcl_diagnosis* diagnosis);
 
-typedef LCL_ENUM(lcl_precision) {
-    LCL_PRECISION_MIXED = 0 /**< float sweeps, residuals and corrections in double or float pairs */,
-    LCL_PRECISION_SINGLE = 1,
-    LCL_PRECISION_DOUBLE = 2
-} lcl_precision;
+typedef LCL_ENUM(lcl_precision){LCL_PRECISION_MIXED = 0 /**< float sweeps, residuals and corrections in double or float pairs */, LCL_PRECISION_SINGLE = 1,
+                                LCL_PRECISION_DOUBLE = 2} lcl_precision;
 
 /** Limit points, out = A points, through host memory: n x channels, rows `stride` values apart (0: channels). out may be points. One pass, in the given
  * precision. */
@@ -362,18 +349,11 @@ LCL_API lcl_status lcl_limit_points(lcl_operator A, const double* points, size_t
 
 /* ---------------------------------------------------------------- solving A P = M */
 
-typedef LCL_ENUM(lcl_solver) {
-    LCL_SOLVER_AUTO = 0,
-    LCL_SOLVER_PIA = 1,
-    LCL_SOLVER_WPIA = 2,
-    LCL_SOLVER_JACOBI = 3,
-    LCL_SOLVER_GS = 4,
-    LCL_SOLVER_GS_COLOURED = 5,
-    LCL_SOLVER_CHEBYSHEV = 6,
-    LCL_SOLVER_CG = 7
-} lcl_solver;
+typedef LCL_ENUM(lcl_solver){LCL_SOLVER_AUTO = 0, LCL_SOLVER_PIA = 1,         LCL_SOLVER_WPIA = 2,      LCL_SOLVER_JACOBI = 3,
+                             LCL_SOLVER_GS = 4,   LCL_SOLVER_GS_COLOURED = 5, LCL_SOLVER_CHEBYSHEV = 6, LCL_SOLVER_CG = 7} lcl_solver;
 
-/** Progress of a solve. Return 0 to cancel (LCL_ERROR_CANCELLED), anything else to go on. */
+/** Progress of a solve; with AUTO and CHEBYSHEV up to 16 iterations are told at once, after they were made. Return 0 to cancel (LCL_ERROR_CANCELLED), anything
+ * else to go on. */
 typedef int32_t (*lcl_progress_callback)(void* user, int32_t iteration, double residual, double target);
 
 typedef struct lcl_solve_options {
@@ -435,15 +415,14 @@ LCL_API lcl_status lcl_interpolate_field(lcl_operator A, lcl_field M, const lcl_
  *     int32_t vertex = 4711;  double point[3] = {0.1, 0.2, 0.3};
  *     lcl_solve_local(A, M, P, &vertex, 1, point, NULL, NULL);                       at every edit; lcl_field_read_vertices reads what is of interest
  *
- * The error does not grow with the number of edits. Residuals are computed in double from the rows as the fields hold them (fields of floats: M and P rounded to
- * float, of which the full solve's max_error speaks too); every row whose residual can have changed ends within tolerance x diagonal, all others read nothing
- * that has changed. So the largest residual of all rows is at most the larger of the tolerance and what it was before, and the distance of P to the exact
- * solution at most |A^-1|_inf times that. Where P was not within the tolerance before, the update goes on as far as that leads.
- * By over-relaxed Gauss-Seidel on the host, on the rows above the tolerance only. The full solve, warm-started, takes over where the operator is singular or
- * indefinite, where more than a sixteenth of the rows (and 4096) would be looked at, and where the iteration is slow (AUTO: 100 sweeps); then changed_rows
- * is vertex_count.
- * options: solver is AUTO or GS, exact_sweeps 0; precision as for lcl_interpolate_field; warm_start, weight and certify are not looked at but by the full solve.
- * report: max_error over the rows whose residual can have changed, iterations are sweeps, seconds_download and _upload the transfers of single rows.
+ * The error does not grow with the number of edits. Residuals are computed in double from the rows as the fields hold them (fields of floats: M and P rounded
+ * to float, of which the full solve's max_error speaks too); every row whose residual can have changed ends within tolerance x diagonal, all others read
+ * nothing that has changed. So the largest residual of all rows is at most the larger of the tolerance and what it was before, and the distance of P to the
+ * exact solution at most |A^-1|_inf times that. Where P was not within the tolerance before, the update goes on as far as that leads. By over-relaxed
+ * Gauss-Seidel on the host, on the rows above the tolerance only. The full solve, warm-started, takes over where the operator is singular or indefinite, where
+ * more than a sixteenth of the rows (and 4096) would be looked at, and where the iteration is slow (AUTO: 100 sweeps); then changed_rows is vertex_count.
+ * options: solver is AUTO or GS, exact_sweeps 0; precision as for lcl_interpolate_field; warm_start, weight and certify are not looked at but by the full
+ * solve. report: max_error over the rows whose residual can have changed, iterations are sweeps, seconds_download and _upload the transfers of single rows.
  * Vertices that keep their points (corners, outside the subset, isolated) take the new ones in P as they are.
  * Errors and results as those of lcl_interpolate_field. Fields are as before if an argument is refused, and, unless the full solve has begun, if progress
  * cancels. */
@@ -466,7 +445,8 @@ LCL_API lcl_status lcl_operator_inverse_norm(lcl_operator A, double* norm, int32
 /* ---------------------------------------------------------------- fields: values that stay on the device */
 
 /** n x channels values in the operator's own order and units, on its device; zero at first. precision MIXED and SINGLE store floats, DOUBLE doubles. The
- * first solve of a shape makes up to three working fields of its size, which the operator keeps for the next one. LCL_ERROR_MEMORY, with the numbers, if the device has no room. */
+ * first solve of a shape makes up to three working fields of its size, which the operator keeps for the next one. LCL_ERROR_MEMORY, with the numbers, if the
+ * device has no room. */
 LCL_API lcl_status lcl_field_create(lcl_operator A, int32_t channels, lcl_precision precision, lcl_field* field);
 LCL_API void lcl_field_retain(lcl_field field);
 LCL_API void lcl_field_release(lcl_field field);

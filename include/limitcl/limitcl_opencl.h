@@ -18,7 +18,8 @@ extern "C" {
 #endif
 
 /** A context on the caller's: both objects are retained, the device is the queue's. The queue must be in order (LCL_ERROR_INVALID_ARGUMENT); limitcl puts its
- * kernels on it and makes a second one of its own for transfers. options->device is not looked at. */
+ * kernels on it, and makes a second one of its own for transfers and for every other launch of a solve's sweeps, in the right order. options->device is not
+ * looked at. */
 LCL_API lcl_status lcl_context_create_from_cl(cl_context context, cl_command_queue queue, const lcl_context_options* options, lcl_context* out);
 /** The queue that kernels go to; it belongs to the context. */
 LCL_API cl_command_queue lcl_context_get_queue(lcl_context context);
