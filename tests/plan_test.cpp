@@ -217,6 +217,34 @@ TEST_CASE("the breadth-first order is a permutation in which faces span two leve
     CHECK(breadth_first_order(Topology{}, {}).empty());
 }
 
+TEST_CASE("neighbours are close in the order of large meshes too, component by component", "[plan][ordering][large]") {
+    const auto far_apart = shapes::combined(shapes::torus_quads(120, 100), shapes::combined(shapes::polygons_mixed(4000, 2), shapes::disk_pole_triangles(40)));
+    for (const auto& shape : {shapes::shuffled(shapes::torus_quads(230, 200), 3), shapes::shuffled(shapes::icosphere(5), 4), shapes::grid_triangles(200, 190),
+                              shapes::with_isolated_vertex(far_apart, 17)}) {
+        INFO(shape.name);
+        const Topology topology = build_topology(shape.mesh);
+        const Array<Index> order = breadth_first_order(topology, shape.mesh.positions);
+        std::vector<Index> place(order.size(), -1);
+        for (std::size_t i = 0; i < order.size(); ++i) place[order[i]] = static_cast<Index>(i);
+        REQUIRE(std::count(place.begin(), place.end(), -1) == 0);
+        Index span = 0;
+        for (Index f = 0; f < topology.face_count; ++f) {
+            const auto [low, high] =
+                std::minmax_element(&topology.face_vertices[topology.face_offsets[f]], &topology.face_vertices[topology.face_offsets[f + 1]],
+                                    [&](Index a, Index b) { return place[a] < place[b]; });
+            span = std::max(span, place[*high] - place[*low]);
+        }
+        CHECK(span < 12 * std::sqrt(shape.mesh.vertex_count));  // a random order spans the whole mesh
+    }
+}
+
+TEST_CASE("meshes whose vertices all lie in one place are ordered too", "[plan][ordering]") {
+    auto shape = shapes::torus_quads(9, 7);
+    std::fill(shape.mesh.positions.begin(), shape.mesh.positions.end(), 4.0);
+    const Array<Index> order = breadth_first_order(build_topology(shape.mesh), shape.mesh.positions);
+    CHECK(std::set<Index>(order.begin(), order.end()).size() == 63);
+}
+
 TEST_CASE("a plan's reach bounds how many blocks the smooth rows of a block look away", "[plan][ordering]") {
     for (const auto& shape : {shapes::torus_quads(40, 30), shapes::polygons_mixed(900, 5), shapes::grid_with_creases()}) {
         const Prepared mesh(shape);
