@@ -235,8 +235,8 @@ void DeviceOperator::enqueue_phases(const Phases& phases, const Part& part, cl_k
         const Index over = phase * phases.width - (part.block_count - 1);
         const Index first = over > 0 ? (over + phases.lag - 1) / phases.lag : 0;
         const Index last = std::min(phases.sweeps - 1, (phase * phases.width + phases.width - 1) / phases.lag);
-        const std::size_t groups = static_cast<std::size_t>(std::max(0, last - first + 1)) * phases.width;
-        const LaunchSize size{groups * shape_.group, static_cast<std::size_t>(shape_.group)};
+        const auto group = static_cast<std::size_t>(shape_.group);
+        const LaunchSize size{phases.width * group, group, static_cast<std::size_t>(std::max(0, last - first + 1))};
         set_argument(relax, 0, phase);
         set_argument(relax, 1, first);
         if (pipeline) pipeline->enqueue(relax, size);

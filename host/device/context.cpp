@@ -215,11 +215,12 @@ void set_argument_bytes(cl_kernel kernel, unsigned place, const void* value, std
 Event enqueue(Context& context, cl_kernel kernel, LaunchSize size) { return enqueue_on(context, context.queue(), kernel, size, {}); }
 
 Event enqueue_on(Context& context, cl_command_queue queue, cl_kernel kernel, LaunchSize size, const Event& after) {
-    if (size.global == 0) return {};
+    if (size.global == 0 || size.second == 0) return {};
     const std::vector<cl_event> waits = list_of(after);
+    const std::size_t global[] = {size.global, size.second}, local[] = {size.local, 1};
     cl_event event = nullptr;
-    const int code = clEnqueueNDRangeKernel(queue, kernel, 1, nullptr, &size.global, size.local ? &size.local : nullptr, static_cast<cl_uint>(waits.size()),
-                                            list_of(waits), &event);
+    const int code = clEnqueueNDRangeKernel(queue, kernel, size.second > 1 ? 2 : 1, nullptr, global, size.local ? local : nullptr,
+                                            static_cast<cl_uint>(waits.size()), list_of(waits), &event);
     if (code != CL_SUCCESS) {
         check(code, "clEnqueueNDRangeKernel",
               "starting " + kernel_name(kernel) + " with " + std::to_string(size.global) + " work-items in groups of " + std::to_string(size.local) + " on " +

@@ -172,9 +172,10 @@ private:
 /// Size of a caller's memory object.
 std::size_t memory_bytes(cl_mem memory);
 
-/// Global and local size in work-items; the global size must be a multiple of the local one. local 0: the driver's choice.
+/// Global and local size in work-items; the global size must be a multiple of the local one. local 0: the driver's choice. second: work-groups along a second
+/// dimension; local must be given where it is not 1.
 struct LaunchSize {
-    std::size_t global = 0, local = 0;
+    std::size_t global = 0, local = 0, second = 1;
 };
 
 /// One argument of a kernel: a buffer or a scalar.
