@@ -200,6 +200,14 @@ TEST_CASE("the smallest eigenvalue is estimated from above, within 7 per cent, a
     }
 }
 
+TEST_CASE("of a large torus only a part is looked at, and the estimate is that of the whole", "[spectrum]") {
+    const Prepared mesh(shapes::torus_quads(390, 360));  // more smooth rows than are looked at
+    const auto system = mesh.system(device_context(), catmull_clark());
+    const double truth = 1.0 / 9;  // (4 - 2)/6 along either direction, at the highest frequency
+    CHECK(spectrum_of(*system).smooth >= truth - 2e-5);
+    CHECK(spectrum_of(*system).smooth <= 1.07 * truth);
+}
+
 TEST_CASE("nearly singular duals of triangle meshes are estimated within 20 per cent", "[spectrum][singular]") {
     for (const std::uint64_t seed : {3, 4}) {
         const auto system = Prepared(shapes::dual_of(shapes::random_triangle_mesh(500, seed))).system(device_context(), catmull_clark());
