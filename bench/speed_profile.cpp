@@ -31,6 +31,7 @@ struct Buffer {
 
 struct Watch {
     double bytes = 0, most_bytes = 0;  // of all buffers
+    double most_groups = 1;            // of any launch so far in groups of a given size: one over all blocks
     bool records = false;
     std::map<cl_mem, Buffer> buffers;
     std::map<cl_kernel, std::map<cl_uint, cl_mem>> arguments;  // those that are buffers, by place
@@ -48,6 +49,15 @@ double bytes_of_arguments(cl_kernel kernel) {
     double bytes = 0;
     for (const auto& [place, memory] : watch.arguments[kernel]) bytes += watch.buffers[memory].bytes;
     return bytes;
+}
+
+/// The part of all blocks that a launch takes, counted by its work-groups; 1 where the driver chooses them.
+double share_of_blocks(cl_uint dimensions, const size_t* global, const size_t* local) {
+    if (local == nullptr) return 1;
+    double groups = 1;
+    for (cl_uint d = 0; d < dimensions; ++d) groups *= static_cast<double>(global[d] / local[d]);
+    watch.most_groups = std::max(watch.most_groups, groups);
+    return groups / watch.most_groups;
 }
 
 std::string name_of(cl_kernel kernel) {
@@ -180,7 +190,8 @@ WATCHED cl_int clSetKernelArg(cl_kernel kernel, cl_uint place, size_t size, cons
 
 WATCHED cl_int clEnqueueNDRangeKernel(cl_command_queue queue, cl_kernel kernel, cl_uint dimensions, const size_t* offset, const size_t* global,
                                       const size_t* local, cl_uint count, const cl_event* events, cl_event* event) {
-    return record(bench::name_of(kernel), bench::bytes_of_arguments(kernel), event, [&](cl_event* out) {
+    const double share = bench::share_of_blocks(dimensions, global, local);
+    return record(bench::name_of(kernel), share * bench::bytes_of_arguments(kernel), event, [&](cl_event* out) {
         return bench::next<decltype(clEnqueueNDRangeKernel)>("clEnqueueNDRangeKernel")(queue, kernel, dimensions, offset, global, local, count, events, out);
     });
 }
