@@ -72,7 +72,9 @@ struct lcl_mesh_s : lcl::Counted {
     const std::vector<lcl::Defect>& defects();
     lcl::BoundaryRule boundary_rule() const;
     void forget_features();
-    /// After new points: what was found out about the old ones. Creases by angle stay.
+    /// Before new points: finds the creases by angle, which stay those of the old ones.
+    void keep_features_of_positions();
+    /// After new points: what was found out about the old ones, and their normals.
     void forget_positions();
 
 private:

@@ -62,7 +62,12 @@ BoundaryRule lcl_mesh_s::boundary_rule() const {
     return file.tags.interpolate_boundary == 2 ? BoundaryRule::edge_only : BoundaryRule::edge_and_corner;
 }
 
+void lcl_mesh_s::keep_features_of_positions() {
+    if (feature_options.crease_angle_degrees > 0) features();
+}
+
 void lcl_mesh_s::forget_positions() {
+    file.normals.clear();
     const std::lock_guard<std::mutex> lock(mutex_);
     defects_.reset();
     if (!positions_are_finite(file.mesh)) topology_.reset();  // no longer sound
@@ -325,12 +330,11 @@ lcl_status lcl_mesh_get_points(lcl_mesh mesh, double* points, size_t stride) {
 
 lcl_status lcl_mesh_set_points(lcl_mesh mesh, const double* points, size_t stride) {
     return guarded([&] {
-        if (required(mesh, "mesh")->feature_options.crease_angle_degrees > 0) mesh->features();  // found on the points as they were
+        required(mesh, "mesh")->keep_features_of_positions();
         PolygonMesh& polygons = mesh->file.mesh;
         const std::size_t step = point_stride(stride, "stride");
         for (Index v = 0; v < polygons.vertex_count; ++v)
             std::copy_n(required(points, "points") + v * step, 3, &polygons.positions[3 * static_cast<std::size_t>(v)]);
-        mesh->file.normals.clear();
         mesh->forget_positions();
         return LCL_OK;
     });

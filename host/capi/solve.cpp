@@ -181,10 +181,13 @@ lcl_status lcl_interpolate_mesh(lcl_operator A, lcl_mesh mesh, const lcl_solve_o
         if (expected != found) throw InvalidArgument("the operator has " + std::to_string(expected) + " vertices, the mesh " + std::to_string(found));
         lcl_solve_options given = options_or(options, LCL_SOLVE_OPTIONS_INIT, "options");
         given.warm_start = 0;
-        std::vector<double> points = mesh->file.mesh.positions;
-        const lcl_status status = interpolate(A, mesh->file.mesh.positions.data(), 3, 3, given, points.data(), 3, report);
-        const lcl_status set = lcl_mesh_set_points(mesh, points.data(), 3);
-        return set == LCL_OK ? status : set;
+        mesh->keep_features_of_positions();
+        const struct Forget {
+            lcl_mesh mesh;
+            ~Forget() { mesh->forget_positions(); }
+        } forget{mesh};  // also where the solve is cancelled after it has put its points there
+        double* const points = mesh->file.mesh.positions.data();
+        return interpolate(A, points, 3, 3, given, points, 3, report);
     });
 }
 

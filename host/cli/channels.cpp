@@ -67,7 +67,7 @@ std::vector<std::string> choose_channels(Job& job, lcl_mesh mesh) {
 std::vector<double> gather_values(lcl_mesh mesh, const std::vector<std::string>& channels) {
     const auto vertex_count = static_cast<std::size_t>(lcl_mesh_vertex_count(mesh));
     const std::size_t stride = 3 + channels.size();
-    std::vector<double> values(vertex_count * stride), property(vertex_count);
+    std::vector<double> values(vertex_count * stride), property(channels.empty() ? 0 : vertex_count);
     check(lcl_mesh_get_points(mesh, values.data(), stride));
     for (std::size_t channel = 0; channel < channels.size(); ++channel) {
         check(lcl_mesh_get_property(mesh, property_index(mesh, channels[channel]), property.data()));
@@ -79,7 +79,7 @@ std::vector<double> gather_values(lcl_mesh mesh, const std::vector<std::string>&
 void scatter_values(lcl_mesh mesh, const std::vector<std::string>& channels, const std::vector<double>& values) {
     const auto vertex_count = static_cast<std::size_t>(lcl_mesh_vertex_count(mesh));
     const std::size_t stride = 3 + channels.size();
-    std::vector<double> property(vertex_count);
+    std::vector<double> property(channels.empty() ? 0 : vertex_count);
     check(lcl_mesh_set_points(mesh, values.data(), stride));
     for (std::size_t channel = 0; channel < channels.size(); ++channel) {
         for (std::size_t vertex = 0; vertex < vertex_count; ++vertex) property[vertex] = values[vertex * stride + 3 + channel];

@@ -87,8 +87,17 @@ void note_solve(Job& job, const lcl_solve_report& report, std::vector<double> re
     job.report.solve->residuals = std::move(residuals);
 }
 
-/// Replaces `values` (n x channels) by control points; the status is LCL_OK or one of the three results.
-lcl_status solve(Job& job, lcl_context context, lcl_operator A, std::int32_t channels, std::vector<double>& values) {
+/// Replaces the points of the mesh, and the channels, by control points.
+lcl_status interpolate(lcl_operator A, lcl_mesh mesh, const std::vector<std::string>& channels, const lcl_solve_options& options, lcl_solve_report& report) {
+    if (channels.empty()) return lcl_interpolate_mesh(A, mesh, &options, &report);
+    std::vector<double> values = gather_values(mesh, channels);
+    const lcl_status status = lcl_interpolate(A, values.data(), 0, static_cast<std::int32_t>(3 + channels.size()), &options, values.data(), 0, &report);
+    if (status == LCL_OK || is_result(status)) scatter_values(mesh, channels, values);
+    return status;
+}
+
+/// The same, with what the report says of it; the status is LCL_OK or one of the three results.
+lcl_status solve(Job& job, lcl_context context, lcl_operator A, lcl_mesh mesh, const std::vector<std::string>& channels) {
     SolveProgress state{&job.terminal.progress(), job.options.sweeps};
     const lcl_solve_options options = solve_options(job.options, state);
     std::vector<double> residuals(static_cast<std::size_t>(std::min(std::max(options.max_iterations, options.exact_sweeps), most_residuals)) + 1);
@@ -98,7 +107,7 @@ lcl_status solve(Job& job, lcl_context context, lcl_operator A, std::int32_t cha
     const double compiled = lcl_context_compile_seconds(context);
     check_interrupt();
     job.terminal.progress().begin("solving");
-    const lcl_status status = lcl_interpolate(A, values.data(), 0, channels, &options, values.data(), 0, &report);
+    const lcl_status status = interpolate(A, mesh, channels, options, report);
     job.terminal.progress().end();
     if (status != LCL_OK && !is_result(status)) throw failure_of(status);
     note_solve(job, report, std::move(residuals));
@@ -157,8 +166,7 @@ void run_interpolate(Job& job) {
     say_scheme(job);
 
     warn_if_all_fixed(job);
-    std::vector<double> values = gather_values(mesh.get(), channels);
-    const lcl_status status = solve(job, context.get(), A.get(), static_cast<std::int32_t>(3 + channels.size()), values);
+    const lcl_status status = solve(job, context.get(), A.get(), mesh.get(), channels);
     std::optional<Failure> failure;
     if (status != LCL_OK) failure = failure_of_result(status, job.report.solve->report);
     const bool was_solved = (status != LCL_ERROR_SINGULAR && status != LCL_ERROR_INDEFINITE) || job.options.keep_going || job.options.sweeps > 0;
@@ -169,7 +177,6 @@ void run_interpolate(Job& job) {
         failure.reset();
     }
     if (failure && !job.options.keep_going) throw *failure;
-    scatter_values(mesh.get(), channels, values);
     write_output(job, mesh.get());
     if (failure) throw *failure;
 }
