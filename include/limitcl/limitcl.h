@@ -404,13 +404,16 @@ LCL_API lcl_status lcl_interpolate(lcl_operator A, const double* M, size_t strid
                                    size_t P_stride, lcl_solve_report* report);
 /** The same on the points of a mesh (which must be the one that A was made from, or one with its faces): replaces them by P. */
 LCL_API lcl_status lcl_interpolate_mesh(lcl_operator A, lcl_mesh mesh, const lcl_solve_options* options, lcl_solve_report* report);
-/** The same on fields of one operator that stay on the device. */
+/** The same on fields of one operator that stay on the device; P needs no upload unless it is a start. Precision DOUBLE needs fields of doubles, the others take
+ * both kinds. */
 LCL_API lcl_status lcl_interpolate_field(lcl_operator A, lcl_field M, const lcl_solve_options* options, lcl_field P, lcl_solve_report* report);
 /** Moves few vertices of a surface that interpolates: writes `values` (count x channels, model units, the new rows of M for `vertices`, each named once) into M
  * and updates P, which solved A P = M to the tolerance before, to the same tolerance. A^-1 decays exponentially with the distance, so only the surroundings of
  * the edit change: time, transfers and memory follow the edit, not the mesh (10 vertices scattered over a million: about 1 ms, some 100 rows of P for each
  * at an edit of a hundredth of the diagonal). The first call of an operator takes 4 bytes a vertex on the host and a few ms.
  *
+ *     lcl_field_create(A, 3, LCL_PRECISION_MIXED, &M);  lcl_field_create(A, 3, LCL_PRECISION_MIXED, &P);
+ *     lcl_field_upload(M, points, LCL_TYPE_DOUBLE, 0);
  *     lcl_interpolate_field(A, M, NULL, P, NULL);                                    once
  *     int32_t vertex = 4711;  double point[3] = {0.1, 0.2, 0.3};
  *     lcl_solve_local(A, M, P, &vertex, 1, point, NULL, NULL);                       at every edit; lcl_field_read_vertices reads what is of interest
@@ -424,6 +427,7 @@ LCL_API lcl_status lcl_interpolate_field(lcl_operator A, lcl_field M, const lcl_
  * options: solver is AUTO or GS, exact_sweeps 0; precision as for lcl_interpolate_field; warm_start, weight and certify are not looked at but by the full
  * solve. report: max_error over the rows whose residual can have changed, iterations are sweeps, seconds_download and _upload the transfers of single rows.
  * Vertices that keep their points (corners, outside the subset, isolated) take the new ones in P as they are.
+ * Edits far beyond the model's size need fields of doubles: the scale of floats is that of the first upload.
  * Errors and results as those of lcl_interpolate_field. Fields are as before if an argument is refused, and, unless the full solve has begun, if progress
  * cancels. */
 LCL_API lcl_status lcl_solve_local(lcl_operator A, lcl_field M, lcl_field P, const int32_t* vertices, size_t count, const double* values,
