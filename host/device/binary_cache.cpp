@@ -56,11 +56,13 @@ std::string temporary_path(const std::string& path) {
 
 bool read_file(const std::string& path, std::string& content) {
     std::error_code failed;
-    const std::uintmax_t size = std::filesystem::file_size(path, failed);  // also fails for a folder
-    if (failed) return false;
-    content.resize(size);
-    std::ifstream file(path, std::ios::binary);
-    return file.read(content.data(), static_cast<std::streamsize>(size)).good();
+    if (std::filesystem::is_directory(path, failed)) return false;
+    std::ifstream file(path, std::ios::binary | std::ios::ate);  // the size is that of the file that is open: another may take its name at any time
+    const std::streamoff size = file.tellg();
+    if (!file || size < 0) return false;
+    content.resize(static_cast<std::size_t>(size));
+    file.seekg(0);
+    return file.read(content.data(), size).good();
 }
 
 bool write_file(const std::string& path, const std::string& head, const std::string& body) {
