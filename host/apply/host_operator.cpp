@@ -11,18 +11,9 @@ namespace {
 
 /// Adds weight * x[column] to out for every entry of a row of a run.
 void gather(const Plan& plan, const Run& run, Index row, const double* x, int channels, double* out) {
-    const auto add = [&](Index column, double weight) {
+    for_each_entry(plan, run, row, [&](Index column, double weight) {
         for (int c = 0; c < channels; ++c) out[c] += weight * x[static_cast<std::size_t>(column) * channels + c];
-    };
-    if (run.shape == RowShape::weighted) {
-        const Index k = run.index_offset + (row - run.first);
-        for (std::uint32_t e = plan.weighted_offsets[k]; e < plan.weighted_offsets[k + 1]; ++e) add(plan.weighted_indices[e], plan.weighted_weights[e]);
-        return;
-    }
-    add(row, run.weights.vertex);
-    const int stride = run.stride();
-    const Index* neighbours = plan.indices.data() + run.index_offset + static_cast<std::size_t>(row - run.first) * stride;
-    for (int i = 0; i < stride; ++i) add(neighbours[i], i < run.edges ? run.weights.edge : run.weights.diagonal);
+    });
 }
 
 /// body(row, A x of that row) for every row, in parallel over blocks.

@@ -383,20 +383,10 @@ Plan build_plan(const PolygonMesh& mesh, const Topology& topology, const Feature
 
 LimitRow plan_row(const Plan& plan, const Run& run, Index row) {
     LimitRow out;
-    if (run.shape == RowShape::weighted) {
-        const Index k = run.index_offset + (row - run.first);
-        const std::uint32_t begin = plan.weighted_offsets[k], end = plan.weighted_offsets[k + 1];
-        out.columns.assign(plan.weighted_indices.begin() + begin, plan.weighted_indices.begin() + end);
-        out.weights.assign(plan.weighted_weights.begin() + begin, plan.weighted_weights.begin() + end);
-        return out;
-    }
-    out.columns.push_back(row);
-    out.weights.push_back(run.weights.vertex);
-    const Index* neighbours = plan.indices.data() + run.index_offset + static_cast<std::size_t>(row - run.first) * run.stride();
-    for (int i = 0; i < run.stride(); ++i) {
-        out.columns.push_back(neighbours[i]);
-        out.weights.push_back(i < run.edges ? run.weights.edge : run.weights.diagonal);
-    }
+    for_each_entry(plan, run, row, [&](Index column, double weight) {
+        out.columns.push_back(column);
+        out.weights.push_back(weight);
+    });
     return out;
 }
 

@@ -65,6 +65,20 @@ struct Plan {
 /// Builds the plan in linear time. OutOfMemory where neighbour lists would pass 2^32 - 1 entries.
 Plan build_plan(const PolygonMesh& mesh, const Topology& topology, const Features& features, const SchemeOptions& options, const PlanOptions& plan_options);
 
+/// body(column, weight) for every entry of a row, in the order of the arrays; columns in the plan's numbering.
+template <class Body>
+void for_each_entry(const Plan& plan, const Run& run, Index row, const Body& body) {
+    if (run.shape == RowShape::weighted) {
+        const Index k = run.index_offset + (row - run.first);
+        for (std::uint32_t e = plan.weighted_offsets[k]; e < plan.weighted_offsets[k + 1]; ++e) body(plan.weighted_indices[e], plan.weighted_weights[e]);
+        return;
+    }
+    body(row, run.weights.vertex);
+    const int stride = run.stride();
+    const Index* neighbours = plan.indices.data() + run.index_offset + static_cast<std::size_t>(row - run.first) * stride;
+    for (int i = 0; i < stride; ++i) body(neighbours[i], i < run.edges ? run.weights.edge : run.weights.diagonal);
+}
+
 /// Entries (columns in the plan's numbering, weights) of one row, in the order of the arrays.
 LimitRow plan_row(const Plan& plan, const Run& run, Index row);
 

@@ -8,20 +8,6 @@ namespace {
 
 constexpr Index chunk_rows = 256;
 
-/// body(column, weight) for every entry of a row.
-template <class Body>
-void for_each_entry(const Plan& plan, const Run& run, Index row, const Body& body) {
-    if (run.shape == RowShape::weighted) {
-        const Index k = run.index_offset + (row - run.first);
-        for (std::uint32_t e = plan.weighted_offsets[k]; e < plan.weighted_offsets[k + 1]; ++e) body(plan.weighted_indices[e], plan.weighted_weights[e]);
-        return;
-    }
-    body(row, run.weights.vertex);
-    const int stride = run.stride();
-    const Index* neighbours = plan.indices.data() + run.index_offset + static_cast<std::size_t>(row - run.first) * stride;
-    for (int i = 0; i < stride; ++i) body(neighbours[i], i < run.edges ? run.weights.edge : run.weights.diagonal);
-}
-
 }  // namespace
 
 /// Once an operator.
