@@ -493,6 +493,193 @@ LCL_API lcl_status lcl_mesh_refine(lcl_mesh mesh, const lcl_scheme_options* sche
  * uv: vertex_count x 2. */
 LCL_API lcl_status lcl_mesh_get_locations(lcl_mesh refined, int32_t* faces, int32_t* corners, double* uv);
 
+/* ---------------------------------------------------------------- operators of your own */
+
+/** Rows of a matrix A of the caller's: row i holds weights[offsets[i]] .. weights[offsets[i + 1] - 1] at columns[..], each column at most once, the diagonal
+ * among them. */
+typedef struct lcl_rows {
+    uint32_t struct_size;
+    int32_t row_count;
+    const int64_t* offsets; /**< row_count + 1, from 0 on */
+    const int32_t* columns; /**< offsets[row_count] */
+    const double* weights;  /**< as many */
+    const double* scaling;  /**< NULL, or D: row_count numbers above 0 with diag(D) A symmetric, which CG and GS, energies and even morphs need */
+} lcl_rows;
+#define LCL_ROWS_INIT \
+    { (uint32_t)sizeof(lcl_rows), 0, NULL, NULL, NULL, NULL }
+
+/** An operator from rows instead of a mesh: solves, series, filters and morphs take it like any other (mesh expansion paper, section 9: A may be any matrix with
+ * eigenvalues in (0, 1]). Checked here: arrays, finite weights, symmetry of diag(D) A (to 1e-12 of its largest element), and the spectrum, by proof where the
+ * rows allow one (Gershgorin) and else by an Arnoldi run of some 30 steps. LCL_ERROR_BAD_INPUT with the row where an array is wrong or D A is not symmetric;
+ * LCL_ERROR_UNSUPPORTED where an eigenvalue above 1, below 0 or not real was found. An eigenvalue of 0 is no failure here: interpolation reports it as
+ * LCL_ERROR_SINGULAR. Without D: CG and GS are refused (LCL_ERROR_INVALID_ARGUMENT). Where rows do not sum to 1, constants are no fixed points of the filters.
+ * tolerance x diagonal of solves refers to the bounding box of M. */
+LCL_API lcl_status lcl_operator_create_rows(lcl_context context, const lcl_rows* rows, lcl_operator* A);
+
+typedef struct lcl_feature_options {
+    uint32_t struct_size;
+    double angle_degrees;   /**< 0: 30. Angle between the tangent planes at an edge's ends at which its weight has fallen to 1/e */
+    double diagonal_factor; /**< 0: 2.5. D_ii = factor x sum of the weights at i; above 2, so that eigenvalues lie in [1 - 2 / factor, 1] */
+    int32_t smoothing;      /**< 0: 3; below 0: none. Applications of D A (m = 2) to the points from which the tangent planes are taken */
+    const int32_t* subset;  /**< NULL, or the vertices that the filter may move: the others keep their points (identity rows) */
+    size_t subset_count;
+} lcl_feature_options;
+#define LCL_FEATURE_OPTIONS_INIT \
+    { (uint32_t)sizeof(lcl_feature_options), 0.0, 0.0, 0, NULL, 0 }
+
+/** A feature-preserving operator of a mesh, A = D^-1 (D - L_w), L_w the graph Laplacian of the edges with weights that fall with the dihedral angle of the
+ * tangent planes at their ends: exp(-(angle / angle_degrees)^2). Vertices along a sharp edge hold together, and vertices beside it hardly pull at them.
+ * Boundary vertices hold to their neighbours on the boundary alone; corners and vertices outside `subset` stay. For denoising: it is no limit operator. */
+LCL_API lcl_status lcl_operator_create_features(lcl_context context, lcl_mesh mesh, const lcl_feature_options* options, lcl_operator* A);
+
+/* ---------------------------------------------------------------- mesh expansion, and what it is good for */
+
+/* A mesh M is the sum of its terms (E - A)^i A M (mesh expansion paper, eq. 6): low i are its low frequencies. Term i passes an eigenvalue mu of A with gain
+ * mu (1 - mu)^i, largest at mu = 1 / (i + 1), so neighbouring terms overlap and 0, 1, 2-3, 4-7, 8-15 are useful bands. Each term is a mesh with the faces of M,
+ * and can be expanded again. D stands for E - (E - A)^(m + 1) here, the sum of the terms 0 to m.
+ *
+ * Functions come in two kinds: through host memory (n x channels, rows `stride` values apart, 0: channels; `out` may be the input), computed in double or pairs
+ * of floats under LCL_PRECISION_MIXED and LCL_PRECISION_DOUBLE; and on fields that stay on the device (which must differ), computed in the fields' own type,
+ * enqueued without waiting. Corners, isolated vertices and those outside the subset have A x = x: they are kept, or become 0 in terms that do not hold them.
+ * They need no inverse: singular operators do as well. Operators with ghosts are refused (LCL_ERROR_UNSUPPORTED). */
+
+/** Passes done of all. Return 0 to cancel (LCL_ERROR_CANCELLED, outputs are as before), anything else to go on. */
+typedef int32_t (*lcl_pass_callback)(void* user, int64_t done, int64_t all);
+
+typedef LCL_ENUM(lcl_series){LCL_SERIES_REPRESENTATION = 0, /**< terms (E - A)^i A M, which sum to M; partial sums smooth */
+                             LCL_SERIES_INTERPOLATION = 1 /**< terms (E - A)^i M, which sum to P with A P = M; partial sums (the iterates of PIA) sharpen */
+} lcl_series;
+
+typedef struct lcl_expand_options {
+    uint32_t struct_size;
+    lcl_series series;
+    lcl_precision precision;
+    int32_t first, last;   /**< the sum of the terms first..last, 0 <= first <= last <= 100000; equal: one term */
+    const double* weights; /**< NULL, or weights of the terms 0 .. weight_count - 1: an equaliser. Rule over first and last */
+    size_t weight_count;
+    double remainder; /**< with weights, representation series: weight of what the terms leave, (E - A)^weight_count M; 1 in the _INIT: all ones give M back */
+    lcl_pass_callback progress;
+    void* progress_user;
+} lcl_expand_options;
+#define LCL_EXPAND_OPTIONS_INIT \
+    { (uint32_t)sizeof(lcl_expand_options), LCL_SERIES_REPRESENTATION, LCL_PRECISION_MIXED, 0, 0, NULL, 0, 1.0, NULL, NULL }
+
+/** A weighted sum of terms. One pass a term up to the last one (one more for the representation series), none stored; three fields. */
+LCL_API lcl_status lcl_expand(lcl_operator A, const double* M, size_t stride, int32_t channels, const lcl_expand_options* options, double* out, size_t out_stride);
+LCL_API lcl_status lcl_expand_field(lcl_operator A, lcl_field M, const lcl_expand_options* options, lcl_field out);
+
+/** Energies of the terms T_0 .. T_(term_count - 1) of the representation series, channel by channel: sum D_ii (T_i - mean)^2 / sum D_ii, D here the scaling that
+ * makes D A symmetric, mean its weighted mean; isolated vertices are left out. energies: term_count x channels, squares of model units. One pass a term.
+ * LCL_ERROR_INVALID_ARGUMENT on rows without D. */
+LCL_API lcl_status lcl_spectrum(lcl_operator A, const double* M, size_t stride, int32_t channels, lcl_precision precision, int32_t term_count, double* energies);
+LCL_API lcl_status lcl_spectrum_field(lcl_operator A, lcl_field M, int32_t term_count, double* energies);
+
+typedef struct lcl_denoise_options {
+    uint32_t struct_size;
+    lcl_precision precision;
+    int32_t m;     /**< 0 to 100000; 2 in the _INIT. Small m: smoother, less detail */
+    int32_t k;     /**< 0 to 100000; 3 in the _INIT */
+    int32_t plain; /**< 1: D^k instead of D^k A */
+    lcl_pass_callback progress;
+    void* progress_user;
+} lcl_denoise_options;
+#define LCL_DENOISE_OPTIONS_INIT \
+    { (uint32_t)sizeof(lcl_denoise_options), LCL_PRECISION_MIXED, 2, 3, 0, NULL, NULL }
+
+/** T = D^k A M (mesh expansion paper, eq. 8, with T_0 the limit mesh A M), or plain D^k M (source slip: the paper writes both). k (m + 1) + 1 passes, plain
+ * k (m + 1). On closed meshes T shrinks to one point a component as k grows: lcl_mesh_match_volume restores volumes. */
+LCL_API lcl_status lcl_denoise(lcl_operator A, const double* M, size_t stride, int32_t channels, const lcl_denoise_options* options, double* out,
+                               size_t out_stride);
+LCL_API lcl_status lcl_denoise_field(lcl_operator A, lcl_field M, const lcl_denoise_options* options, lcl_field out);
+/** m and k in plain words: strength 0 (k = 0: nothing but A, or nothing at all where plain) to 1 (m = 1, k = 10), 0.5 the default m = 2, k = 3; the more, the
+ * smoother. */
+LCL_API lcl_status lcl_denoise_settings(double strength, int32_t* m, int32_t* k);
+/** Moves the points of every closed component along their normals (area-weighted), all by one distance, until the component encloses the volume that it had
+ * with `points` (vertex_count rows of three, `stride` values apart, 0: 3). Corners and `fixed` vertices stay. A component that keeps no volume, or cannot reach
+ * the old one, stays as it is, with a note of kind LCL_NOTE_WARNING. LCL_ERROR_BAD_INPUT on a mesh with a boundary: it encloses nothing. */
+LCL_API lcl_status lcl_mesh_match_volume(lcl_mesh mesh, const double* points, size_t stride, const int32_t* fixed, size_t fixed_count);
+/** Volume that the faces enclose (fans round each face's mean; positive where they look outwards). LCL_ERROR_BAD_INPUT with a boundary. */
+LCL_API lcl_status lcl_mesh_get_volume(lcl_mesh mesh, double* volume);
+
+typedef struct lcl_sharpen_options {
+    uint32_t struct_size;
+    lcl_precision precision;
+    int32_t first, last; /**< terms first..last are added, 1 <= first <= last <= 100000; 1 and 3 in the _INIT */
+    int32_t k;           /**< times, at least 1; 1 in the _INIT */
+    lcl_pass_callback progress;
+    void* progress_user;
+} lcl_sharpen_options;
+#define LCL_SHARPEN_OPTIONS_INIT \
+    { (uint32_t)sizeof(lcl_sharpen_options), LCL_PRECISION_MIXED, 1, 3, 1, NULL, NULL }
+
+/** T_(k + 1) = T_k + sum (E - A)^i T_k over first..last (mesh expansion paper, section 6). k x last passes. An eigenvalue mu gains 1 + sum (1 - mu)^i a step, by
+ * design without limit in k: at most (last - first + 2)^k in the D norm, which is the bound against blow-up: settings with more than 10^6 are refused
+ * (LCL_ERROR_INVALID_ARGUMENT). */
+LCL_API lcl_status lcl_sharpen(lcl_operator A, const double* M, size_t stride, int32_t channels, const lcl_sharpen_options* options, double* out,
+                               size_t out_stride);
+LCL_API lcl_status lcl_sharpen_field(lcl_operator A, lcl_field M, const lcl_sharpen_options* options, lcl_field out);
+
+typedef LCL_ENUM(lcl_morph_path){LCL_MORPH_RECURSION = 0, /**< m and rho as given */
+                                 LCL_MORPH_EVEN = 1,      /**< rho of each frame for equal steps, the last frame is the target itself */
+                                 LCL_MORPH_LINEAR = 2 /**< straight lines, for comparison */
+} lcl_morph_path;
+
+typedef struct lcl_morph_options {
+    uint32_t struct_size;
+    lcl_precision precision;
+    lcl_morph_path path;
+    int32_t frames; /**< N, 1 to 1000000; 0: 10. Frames 0 (the start) to N are given out */
+    const int32_t* m; /**< m of the step to frame 1, 2, ..; the last is repeated; NULL: 2. 0 to 100000 */
+    size_t m_count;
+    const double* rho; /**< likewise, above 0 and up to 1; NULL: 0.5. Not with EVEN */
+    size_t rho_count;
+} lcl_morph_options;
+#define LCL_MORPH_OPTIONS_INIT \
+    { (uint32_t)sizeof(lcl_morph_options), LCL_PRECISION_MIXED, LCL_MORPH_RECURSION, 0, NULL, 0, NULL, 0 }
+
+/** points: n x channels, valid during the call, which may change them. Return 0 to cancel (LCL_ERROR_CANCELLED). */
+typedef int32_t (*lcl_frame_callback)(void* user, int32_t frame, double* points);
+
+/** Q_0 = from; Q_(k + 1) = to + rho D (Q_k - to) (mesh expansion paper, eq. 9; source slip: Q_k tends to `to` for rho < 1 only, for rho = 1 to a translation of
+ * it). EVEN: rho_k = min(1, (1 - (k + 1)/N) |Q_0 - to|_D / |D (Q_k - to)|_D) over x, y, z, the last 0; where the 1 cuts, early steps are longer. The flat middle
+ * shape of a mirror pair is not avoided. m + 1 passes a frame. A belongs to `from` or any mesh with its faces. */
+LCL_API lcl_status lcl_morph(lcl_operator A, const double* from, const double* to, size_t stride, int32_t channels, const lcl_morph_options* options,
+                             lcl_frame_callback frame, void* user);
+/** One step on fields, for frames that stay on the device: difference becomes rho D difference, and frame to + difference. The first difference comes from
+ * lcl_field_subtract(from, to, difference). */
+LCL_API lcl_status lcl_morph_field(lcl_operator A, int32_t m, double rho, lcl_field to, lcl_field difference, lcl_field frame);
+/** difference = a - b, of one operator, centre and scale (lcl_field_match); difference may be neither. */
+LCL_API lcl_status lcl_field_subtract(lcl_field a, lcl_field b, lcl_field difference);
+/** LCL_OK where two meshes have the same faces, vertex by vertex; else LCL_ERROR_BAD_INPUT with the first difference. */
+LCL_API lcl_status lcl_mesh_compare_faces(lcl_mesh a, lcl_mesh b);
+
+typedef struct lcl_texture_options {
+    uint32_t struct_size;
+    int32_t octaves;   /**< 0: 4; at most 20 */
+    int32_t levels;    /**< K refinements of the result, octaves - 1 at least; 0: so many */
+    double frequency;  /**< F, noise cells across the diagonal of the bounding box in the first octave; 0: 8 */
+    uint32_t seed;
+    const double* colours; /**< colour_count x (red, green, blue) from 0 to 1; NULL: five of marble */
+    size_t colour_count;
+    lcl_precision precision; /**< of the noise and of the solves */
+    double tolerance;        /**< of the solves, relative to the range of the noise; 0: 1e-6 */
+    int32_t max_iterations;  /**< 0: 200 */
+    int32_t keep_going;      /**< 1: take what the solves give although A is singular, indefinite or they did not converge; the status says so */
+    lcl_progress_callback progress; /**< of the solves */
+    void* progress_user;
+} lcl_texture_options;
+#define LCL_TEXTURE_OPTIONS_INIT \
+    { (uint32_t)sizeof(lcl_texture_options), 0, 0, 0.0, 0, NULL, 0, LCL_PRECISION_MIXED, 0.0, 0, 0, NULL, NULL }
+
+/** Procedural texture by interpolated octaves (mesh expansion paper, section 5): octave i is improved Perlin noise f(2^i p)/2^i at the vertices p of the mesh
+ * refined i times, p = F (x - centre)/diagonal + an offset from the seed; each octave is interpolated by a limit surface of its own, all are added on the mesh
+ * refined `levels` times, at its limit points, and normalised to t in [0, 1] (1/2 where all is one). `textured` is that mesh at its limit points, with the
+ * property "noise" (t) and colours red, green, blue from a cubic B-spline through the colours, colour j at t = j/(colour_count - 1), natural ends, clamped to
+ * [0, 1]. Deterministic by seed. alpha and lambda rule the first refinement alone. `scheme`: as for lcl_operator_create. report: of the worst solve.
+ * LCL_ERROR_MEMORY, with the number, where the levels do not fit. */
+LCL_API lcl_status lcl_texture(lcl_context context, lcl_mesh mesh, const lcl_scheme_options* scheme, const lcl_texture_options* options, lcl_mesh* textured,
+                               lcl_solve_report* report);
+
 #ifdef __cplusplus
 }
 #endif
