@@ -431,6 +431,35 @@ TEST_CASE("a model far away is filtered as finely in float as one at the origin"
     }
 }
 
+TEST_CASE("progress counts the passes that were promised, and never goes back", "[expansion][progress]") {
+    for (const Subject* subject :
+         {&closed_subjects().back(), &closed_subject(), &patchwork()}) {  // rows in two parts, in one, and in several that depend on each other
+        const std::vector<double> M = subject->values();
+        const auto check_passes = [&](const auto& options, int64_t expected) {
+            for (const bool on_fields : {false, true}) {
+                INFO(subject->name << (on_fields ? ", fields" : ", arrays") << ", " << expected << " passes");
+                Passes passes;
+                run(*subject, M, with_progress(options, passes), {LCL_PRECISION_SINGLE, on_fields});
+                REQUIRE(passes.done.empty() == (expected == 0));
+                CHECK(std::is_sorted(passes.done.begin(), passes.done.end(), std::less_equal<int64_t>()));
+                for (const int64_t all : passes.all) CHECK(all == expected);
+                if (expected > 0) CHECK(passes.done.back() == expected);
+                if (expected > 0) CHECK(passes.done.front() > 0);
+            }
+        };
+        for (const int m : {0, 2, 5, 16, 17, 40})
+            for (const int k : {0, 1, 3, 10}) {
+                check_passes(denoise_options(m, k), k * (m + 1) + 1);
+                check_passes(denoise_options(m, k, true), k * (m + 1));
+            }
+        check_passes(expand_options(0, 50), 51);
+        check_passes(expand_options(7, 9), 10);
+        check_passes(expand_options(0, 50, LCL_SERIES_INTERPOLATION), 50);
+        check_passes(expand_options(0, 0, LCL_SERIES_INTERPOLATION), 0);
+        check_passes(sharpen_options(1, 20, 3), 60);
+    }
+}
+
 TEST_CASE("the same filter of the same input gives the same bits", "[expansion]") {
     const Subject& subject = closed_subject();
     for (const Way& way : all_ways()) {
