@@ -360,6 +360,37 @@ TEST_CASE("corners, isolated vertices and vertices outside the subset keep their
     }
 }
 
+TEST_CASE("isolated vertices may be anywhere, and disturb nothing", "[expansion][isolated]") {
+    constexpr double infinity = std::numeric_limits<double>::infinity();
+    for (const Subject* subject : {&closed_subjects().back(), &patchwork()})
+        for (const double place : {1e300, -infinity, std::nan("")}) {
+            const std::vector<double> plain = subject->values();
+            std::vector<double> M = plain;
+            std::size_t isolated = 0;
+            while (!subject->is_isolated(isolated)) ++isolated;
+            M[3 * isolated + 1] = place;
+            for (const lcl_precision precision : {LCL_PRECISION_MIXED, LCL_PRECISION_SINGLE}) {
+                INFO(subject->name << ", " << place << ", precision " << precision);
+                const Way way{precision, false};
+                const auto check_others = [&](std::vector<double> out, std::vector<double> expected, double value) {
+                    CHECK((out[3 * isolated + 1] == value || (std::isnan(value) && std::isnan(out[3 * isolated + 1]))));
+                    expected[3 * isolated + 1] = out[3 * isolated + 1] = 0;
+                    CHECK(same(out, expected));
+                };
+                check_others(run(*subject, M, denoise_options(2, 3), way), run(*subject, plain, denoise_options(2, 3), way), place);
+                check_others(run(*subject, M, sharpen_options(1, 3, 1), way), run(*subject, plain, sharpen_options(1, 3, 1), way), place);
+                check_others(run(*subject, M, expand_options(0, 20), way), run(*subject, plain, expand_options(0, 20), way), place);
+                check_others(run(*subject, M, expand_options(1, 2), way), run(*subject, plain, expand_options(1, 2), way), 0);
+                check_others(run(*subject, M, expand_options(2, 20, LCL_SERIES_INTERPOLATION), way),
+                             run(*subject, plain, expand_options(2, 20, LCL_SERIES_INTERPOLATION), way), 0);
+                std::vector<double> energies(12), plain_energies(12);
+                succeed(lcl_spectrum(subject->A.get(), M.data(), 0, 3, precision, 4, energies.data()));
+                succeed(lcl_spectrum(subject->A.get(), plain.data(), 0, 3, precision, 4, plain_energies.data()));
+                CHECK(same(energies, plain_energies));
+            }
+        }
+}
+
 TEST_CASE("1 to 24 channels are each filtered as if they were alone", "[expansion][channels]") {
     for (const Subject* subject : {&closed_subject(), &patchwork()})
         for (const int channels : {1, 2, 3, 4, 5, 8, 9, 11, 12, 19, 24}) {
