@@ -491,6 +491,39 @@ TEST_CASE("progress counts the passes that were promised, and never goes back", 
     }
 }
 
+TEST_CASE("a filter that is cancelled leaves its output as it was", "[expansion][progress]") {
+    for (const Subject* subject : {&closed_subjects().back(), &patchwork()}) {
+        lcl_operator A = subject->A.get();
+        const std::vector<double> M = subject->values(), before = values_of(subject->points().array() * 2 + 7);
+        const auto check_cancelled = [&](const auto& plain, int call_number) {
+            INFO(subject->name << ", at call " << call_number);
+            Passes passes;
+            passes.stop_at = call_number;
+            const auto options = with_progress(plain, passes);
+            std::vector<double> out = before;
+            refuse(call(A, M.data(), 0, 3, options, out.data(), 0), LCL_ERROR_CANCELLED, "cancelled");
+            CHECK(static_cast<int>(passes.done.size()) == call_number);
+            CHECK(same(out, before));
+            passes.done.clear();
+            const FieldHandle x = make_field(A, M, LCL_PRECISION_SINGLE), y = make_field(A, before, LCL_PRECISION_SINGLE);
+            const std::vector<double> held = download(y.get(), subject->rows()), given = download(x.get(), subject->rows());
+            refuse(call(A, x.get(), options, y.get()), LCL_ERROR_CANCELLED, "cancelled");
+            CHECK(static_cast<int>(passes.done.size()) == call_number);
+            CHECK(same(download(y.get(), subject->rows()), held));
+            CHECK(same(download(x.get(), subject->rows()), given));
+            succeed(call(A, x.get(), plain, y.get()));  // and nothing is left of it
+            CHECK(same(download(y.get(), subject->rows()), run(*subject, M, plain, {LCL_PRECISION_SINGLE, true})));
+        };
+        for (const int call_number : {1, 2}) {
+            check_cancelled(denoise_options(2, 30), call_number);
+            check_cancelled(denoise_options(40, 2), call_number);
+            check_cancelled(expand_options(0, 60), call_number);
+            check_cancelled(expand_options(40, 42), call_number);
+            check_cancelled(sharpen_options(1, 3, 3), call_number);
+        }
+    }
+}
+
 TEST_CASE("the same filter of the same input gives the same bits", "[expansion]") {
     const Subject& subject = closed_subject();
     for (const Way& way : all_ways()) {
