@@ -217,6 +217,34 @@ TEST_CASE("linear frames are straight lines with exact ends", "[morph]") {
     }
 }
 
+TEST_CASE("corners, isolated vertices and those outside the subset go straight to the target, and stay where it is theirs, to the bit", "[morph][isolated]") {
+    for (const Subject* subject : all_subjects())
+        for (const lcl_precision precision : precisions())
+            for (const Path& path : {Path{LCL_MORPH_RECURSION, 4, {2, 20}, {0.5, 0.75}}, Path{LCL_MORPH_EVEN, 4, {2, 20}, {}}}) {
+                INFO(subject->name << ", path " << path.path << ", precision " << precision);
+                const std::vector<double> from = subject->values();
+                std::vector<double> to = other_points(*subject), far = to;
+                for (std::size_t v = 0; v < subject->rows(); ++v) {
+                    if (subject->is_fixed(v)) std::copy_n(&from[3 * v], 3, &to[3 * v]);
+                    if (subject->is_isolated(v)) to[3 * v] = from[3 * v] * 1e200;
+                }
+                const auto frames = run(*subject, from, to, path, precision), moved = run(*subject, from, far, path, precision);
+                double share = 1;
+                for (int i = 1; i <= 4; ++i) {
+                    share *= path.rho_of(i - 1);
+                    for (std::size_t v = 0; v < subject->rows(); ++v)
+                        if (subject->is_fixed(v) && !subject->is_isolated(v)) CHECK(std::equal(&frames[i][3 * v], &frames[i][3 * v] + 3, &from[3 * v]));
+                    if (path.path == LCL_MORPH_EVEN) continue;
+                    for (std::size_t v = 0; v < subject->rows(); ++v) {
+                        if (!subject->is_fixed(v)) continue;
+                        for (int c = 0; c < 3; ++c)
+                            CHECK(moved[i][3 * v + c] == Approx(far[3 * v + c] + share * (from[3 * v + c] - far[3 * v + c])).epsilon(1e-15).margin(1e-15));
+                        if (subject->is_isolated(v)) CHECK(frames[i][3 * v] == Approx(to[3 * v] + share * (from[3 * v] - to[3 * v])).epsilon(1e-14));
+                    }
+                }
+            }
+}
+
 TEST_CASE("1 to 11 channels are morphed, with any stride", "[morph][channels]") {
     for (const Subject* subject : {&closed_subject(), &patchwork()})
         for (const int channels : {1, 2, 3, 4, 5, 8, 9, 11}) {
