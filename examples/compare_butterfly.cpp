@@ -105,8 +105,8 @@ int main(int argc, char** argv) {
                         fine[i].face_count(), missed, shapes[i].kink, shapes[i].saddle);
             limitcl::write_mesh(fine[i], argc == 4 ? argv[i + 1] : files[i]);
         }
-        const bool better = shapes[2].kink < shapes[1].kink && shapes[1].kink < shapes[0].kink && shapes[2].saddle < shapes[1].saddle &&
-                            shapes[1].saddle < shapes[0].saddle;
+        const bool better =
+            shapes[2].kink < shapes[1].kink && shapes[1].kink < shapes[0].kink && shapes[2].saddle < shapes[1].saddle && shapes[1].saddle < shapes[0].saddle;
         return through && better ? 0 : 1;
     } catch (const std::exception& error) {
         std::fprintf(stderr, "%s\n", error.what());
