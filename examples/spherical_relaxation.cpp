@@ -40,8 +40,7 @@ Matrix3Xd make_sphere(const PolyMesh& mesh, const Matrix3Xd& shape) {
 
 // Turns the sphere to the shape (least squares), gives it the shape's volume and the side that its faces look to, and puts it where the shape is.
 void place_sphere(const limitcl::Mesh& mesh, const Matrix3Xd& shape, Matrix3Xd& at) {
-    double volume = 0;
-    limitcl::check(lcl_mesh_get_volume(mesh.get(), &volume));
+    const double volume = limitcl::volume(mesh);
     if (volume < 0) at = -at;
     const Eigen::Matrix3d rotation = Eigen::umeyama(at, shape, false).topLeftCorner<3, 3>();
     at = std::cbrt(3 * std::abs(volume) / (4 * EIGEN_PI)) * rotation * at;
@@ -50,27 +49,22 @@ void place_sphere(const limitcl::Mesh& mesh, const Matrix3Xd& shape, Matrix3Xd& 
 
 // Morphs in even steps and tells whether all frames came, finite, each nearer to the sphere than the last, and the sphere itself at the end.
 bool morph(const limitcl::Mesh& mesh, const Matrix3Xd& sphere) {
-    struct Distances {
-        const Matrix3Xd& to;
-        std::vector<double> rms;
-    } distances{sphere, {}};
-    const lcl_frame_callback measure = [](void* user, std::int32_t, double* points) -> std::int32_t {
-        Distances& d = *static_cast<Distances*>(user);
-        d.rms.push_back((Eigen::Map<Matrix3Xd>(points, 3, d.to.cols()) - d.to).norm() / std::sqrt(static_cast<double>(d.to.cols())));
-        return 1;
-    };
     const limitcl::Context context;
     const limitcl::LimitOperator A(context, mesh);
-    lcl_morph_options options = LCL_MORPH_OPTIONS_INIT;
+    limitcl::MorphOptions options;
     options.path = LCL_MORPH_EVEN;
     options.frames = frames;
-    limitcl::check(lcl_morph(A.get(), mesh.points().data(), sphere.data(), 0, 3, &options, measure, &distances));
+    std::vector<double> distances;  // to the sphere, root mean square
+    limitcl::morph(A, mesh.points(), {sphere.data(), static_cast<std::size_t>(sphere.size())}, 3, options, [&](int, double* points) {
+        distances.push_back((Eigen::Map<Matrix3Xd>(points, 3, sphere.cols()) - sphere).norm() / std::sqrt(static_cast<double>(sphere.cols())));
+        return true;
+    });
     std::printf("distance to the sphere, frame by frame:");
-    for (const double rms : distances.rms) std::printf(" %.3g", rms);
+    for (const double distance : distances) std::printf(" %.3g", distance);
     std::printf("\n");
-    const auto not_nearer = [](double rms, double next) { return !(next < rms); };  // also what is not a number
-    return distances.rms.size() == frames + 1 && std::adjacent_find(distances.rms.begin(), distances.rms.end(), not_nearer) == distances.rms.end() &&
-           distances.rms.back() <= 1e-9 * distances.rms.front();
+    const auto not_nearer = [](double distance, double next) { return !(next < distance); };  // also what is not a number
+    return distances.size() == frames + 1 && std::adjacent_find(distances.begin(), distances.end(), not_nearer) == distances.end() &&
+           distances.back() <= 1e-9 * distances.front();
 }
 
 }  // namespace
