@@ -10,13 +10,49 @@ using namespace lcl;
 
 namespace {
 
-constexpr double isolated_range = 1e37;  // as in to_plan_order: isolated vertices may be anywhere
+void fill(lcl_solve_report* report, const SolveReport& inner) {
+    if (report == nullptr) return;
+    lcl_solve_report out = options_or(report, LCL_SOLVE_REPORT_INIT, "report");
+    out.solver = static_cast<lcl_solver>(inner.solver);
+    out.converged = inner.status == SolveStatus::converged;
+    out.iterations = inner.iterations;
+    out.residual_count = inner.residuals.size();
+    if (out.residuals != nullptr) std::copy_n(inner.residuals.begin(), std::min(out.residual_capacity, inner.residuals.size()), out.residuals);
+    out.lambda_min = inner.lambda_min;
+    out.max_error = inner.max_error;
+    out.surface_error_bound = inner.surface_error_bound;
+    out.channel_error = inner.channel_error;
+    out.seconds_upload = inner.seconds_upload;
+    out.seconds_solve = inner.seconds_solve;
+    out.seconds_download = inner.seconds_download;
+    out.vertex_count = copy_first(out.vertices, inner.vertices);
+    copy_text(out.message, inner.message);
+    out.changed_rows = inner.changed_rows;
+    give(report, out, "report");
+}
 
-Precision inner_precision(lcl_precision precision) {
+}  // namespace
+
+Precision lcl::inner_precision(lcl_precision precision) {
     if (precision < LCL_PRECISION_MIXED || precision > LCL_PRECISION_DOUBLE)
         throw InvalidArgument("precision is " + std::to_string(precision) + ", it goes from 0 to 2");
     return static_cast<Precision>(precision);
 }
+
+lcl_status lcl::conclude(const SolveReport& inner, const lcl_solve_options& options, lcl_solve_report* report) {
+    fill(report, inner);
+    if (inner.status == SolveStatus::converged || (inner.status == SolveStatus::not_converged && options.exact_sweeps > 0)) return LCL_OK;
+    last_error() = {inner.message, {inner.vertices, {}}};
+    switch (inner.status) {
+        case SolveStatus::singular: return LCL_ERROR_SINGULAR;
+        case SolveStatus::indefinite: return LCL_ERROR_INDEFINITE;
+        default: return LCL_ERROR_NOT_CONVERGED;
+    }
+}
+
+namespace {
+
+constexpr double isolated_range = 1e37;  // as in to_plan_order: isolated vertices may be anywhere
 
 void check_channels(int32_t channels, std::size_t stride, const char* name) {
     if (channels < 1) throw InvalidArgument("channels is " + std::to_string(channels) + ", it is at least 1");
@@ -47,38 +83,6 @@ SolveOptions inner_options(const lcl_solve_options& given) {
             return given.progress(given.progress_user, iteration, residual, target) != 0;
         };
     return options;
-}
-
-void fill(lcl_solve_report* report, const SolveReport& inner) {
-    if (report == nullptr) return;
-    lcl_solve_report out = options_or(report, LCL_SOLVE_REPORT_INIT, "report");
-    out.solver = static_cast<lcl_solver>(inner.solver);
-    out.converged = inner.status == SolveStatus::converged;
-    out.iterations = inner.iterations;
-    out.residual_count = inner.residuals.size();
-    if (out.residuals != nullptr) std::copy_n(inner.residuals.begin(), std::min(out.residual_capacity, inner.residuals.size()), out.residuals);
-    out.lambda_min = inner.lambda_min;
-    out.max_error = inner.max_error;
-    out.surface_error_bound = inner.surface_error_bound;
-    out.channel_error = inner.channel_error;
-    out.seconds_upload = inner.seconds_upload;
-    out.seconds_solve = inner.seconds_solve;
-    out.seconds_download = inner.seconds_download;
-    out.vertex_count = copy_first(out.vertices, inner.vertices);
-    copy_text(out.message, inner.message);
-    out.changed_rows = inner.changed_rows;
-    give(report, out, "report");
-}
-
-lcl_status conclude(const SolveReport& inner, const lcl_solve_options& options, lcl_solve_report* report) {
-    fill(report, inner);
-    if (inner.status == SolveStatus::converged || (inner.status == SolveStatus::not_converged && options.exact_sweeps > 0)) return LCL_OK;
-    last_error() = {inner.message, {inner.vertices, {}}};
-    switch (inner.status) {
-        case SolveStatus::singular: return LCL_ERROR_SINGULAR;
-        case SolveStatus::indefinite: return LCL_ERROR_INDEFINITE;
-        default: return LCL_ERROR_NOT_CONVERGED;
-    }
 }
 
 lcl_status interpolate(lcl_operator A, const double* M, std::size_t stride, int32_t channels, const lcl_solve_options& given, double* P, std::size_t P_stride,
