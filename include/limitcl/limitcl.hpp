@@ -19,5 +19,6 @@
 #include "refine.hpp"
 #include "scheme.hpp"
 #include "solve.hpp"
+#include "texture.hpp"
 
 #endif
