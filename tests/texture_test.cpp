@@ -201,11 +201,6 @@ TEST_CASE("vertices outside the subset keep their noise as control values", "[te
     }
 }
 
-TEST_CASE("a texture runs once on a small mesh", "[texture][tiny]") {
-    const TextureOptions options = texture_options(2, 1, 1e-6, Precision::mixed);
-    check_against(reference(shapes::octahedron(), loop(), options), texture_of(shapes::octahedron(), loop(), options));
-}
-
 TEST_CASE("one octave passes through the noise at the mesh's own vertices", "[texture]") {
     // Old vertices keep their numbers with these schemes, and A_K C_K = A_0 P_0 = N there; t is an affine map of it.
     const SchemeOptions scheme = GENERATE(catmull_clark(), catmull_clark(0.7), catmull_clark(0.2, 0.3), loop());
