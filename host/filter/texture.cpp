@@ -13,8 +13,8 @@ namespace lcl {
 namespace {
 
 constexpr double equal_values = 1e-13;  // values that differ by less of their size differ by rounding
-// On the finest mesh. Host: mesh, topology, stencils, plan and values at once. Device: the fields of four wide channels, and what the last octave's solve
-// keeps.
+// Of the finest mesh. Host, as measured: mesh, topology, stencils, plan and values at once, and on a CPU what the device holds. Device: the fields of four wide
+// channels, what the last octave's solve keeps, and neighbours.
 constexpr std::int64_t host_bytes_a_vertex = 500, device_bytes_a_vertex = 104, device_bytes_a_corner = 8, bytes_a_row = 32;
 
 void check_fits(const RefinedSize& size, int levels, int further_channels, const Context& context) {
