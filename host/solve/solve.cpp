@@ -97,10 +97,11 @@ public:
         const bool nothing_proven = plan.has_darts() || std::isnan(plan.lambda_min_bound);
         const bool failed =
             monitor_->outcome() == Outcome::indefinite || (monitor_->outcome() == Outcome::diverged && nothing_proven && options_.solver == Solver::automatic);
-        report_.status = spectrum.indefinite || (failed && !converged) ? SolveStatus::indefinite
-                         : spectrum.singular                           ? SolveStatus::singular
-                         : converged                                   ? SolveStatus::converged
-                                                                       : SolveStatus::not_converged;
+        report_.status = spectrum.indefinite ? SolveStatus::indefinite
+                         : spectrum.singular ? SolveStatus::singular  // also where rounding made iterations meet a negative eigenvalue
+                         : converged         ? SolveStatus::converged
+                         : failed            ? SolveStatus::indefinite
+                                             : SolveStatus::not_converged;
         if (report_.status == SolveStatus::converged) return;
         report_.message = !spectrum.message.empty() ? spectrum.message : spectrum.warning.empty() ? reason() : reason() + "; " + spectrum.warning;
         report_.vertices = spectrum.message.empty() ? system_.weakest : spectrum.vertices;
