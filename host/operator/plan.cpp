@@ -304,6 +304,7 @@ private:
                 const Run& run = plan_.runs[r];
                 if (run.shape != RowShape::weighted) std::fill_n(plan_.diagonal.begin() + run.first, run.count, run.weights.vertex);
                 if (run.first >= plan_.smooth.first_row) bounds[b] = std::min(bounds[b], fill_scaling(run));
+                else fill_scaling_by_faces(run);
             }
         });
         const bool is_smooth_run_of_two =
@@ -327,6 +328,20 @@ private:
             bound = std::min(bound, lambda_min_bound(options_, n, lambda));
         }
         return bound;
+    }
+
+    /// Of a run off the smooth part: the same formula with the number of faces at each vertex; 0 without faces, and where a blend ratio of 1 leaves no formula.
+    void fill_scaling_by_faces(const Run& run) {
+        Index last = 0;
+        double scaling = 0;  // of `last` faces, without a blend
+        for (Index row = run.first; row < run.first + run.count; ++row) {
+            const Index v = plan_.vertex_of_row[row], faces = topology_.vertex_face_count[v];
+            const double lambda = options_.lambda_at(v);
+            if (faces == 0 || lambda == 1) continue;
+            if (faces != last) scaling = symmetric_scaling(options_.scheme, faces, 0);
+            last = faces;
+            plan_.scaling[row] = scaling / (1 - lambda);
+        }
     }
 
     /// How far each block's rows reach, in blocks: rows of a part's blocks are equally many but for the last.

@@ -53,7 +53,9 @@ struct Plan {
     std::vector<std::uint32_t> weighted_offsets{0};  ///< weighted_count + 1
     std::vector<Index> weighted_indices;
     std::vector<double> weighted_weights;
-    std::vector<double> scaling;   ///< row_count: D_ii that makes D A symmetric on the smooth part; 0 elsewhere
+    /// row_count: D_ii that makes D A symmetric on the smooth part; elsewhere the same formula with n the number of faces, which weights sums over the mesh. 0 for
+    /// isolated vertices and blend ratios of 1.
+    std::vector<double> scaling;
     std::vector<double> diagonal;  ///< row_count: A_ii
     double lambda_min_bound = 0;   ///< proven lower bound of the smooth part's spectrum; NaN where none is known (valence below 3)
     bool has_valence_2 = false;    ///< a smooth vertex with fewer than three faces
