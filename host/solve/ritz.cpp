@@ -5,6 +5,7 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "host/apply/host_operator.h"
 #include "host/parallel.h"
@@ -53,12 +54,13 @@ private:
         const std::size_t first = plan_.has_scaling && size_ > 0 ? size_ - 1 : 0;  // A is self-adjoint: it is orthogonal to all but the last two
         std::vector<const Vector*> others;
         for (std::size_t i = first; i < basis_.size(); ++i) others.push_back(&basis_[i]);
-        for (int time = 0; time < 2; ++time) {  // twice is enough (Giraud et al. 2005)
+        double left = before, size;
+        do {  // once more where much has gone, which leaves rounding behind (Daniel et al. 1976)
             const Vector parts = dots(others, next);
             for (std::size_t i = 0; i < parts.size(); ++i) hessenberg_(first + i, size_) += parts[i];
             subtract(others, parts, next);
-        }
-        const double left = std::sqrt(dots({&next}, next)[0]);
+            size = std::exchange(left, std::sqrt(dots({&next}, next)[0]));
+        } while (left < 0.5 * size && left > exhausted * before);
         const bool goes_on = left > exhausted * before;
         if (goes_on) {
             hessenberg_(size_ + 1, size_) = left;
@@ -69,6 +71,9 @@ private:
         ++size_;
         return goes_on;
     }
+
+    using Segment = Eigen::Map<const Eigen::ArrayXd>;
+    static Segment segment(const Vector& a, std::size_t begin, std::size_t end) { return {a.data() + begin, static_cast<Eigen::Index>(end - begin)}; }
 
     template <class Body>
     void for_each_chunk(const Body& body) const {
@@ -86,11 +91,8 @@ private:
         const std::size_t chunks = (static_cast<std::size_t>(plan_.row_count) + chunk - 1) / chunk;
         Vector parts(chunks * a.size()), sums(a.size(), 0.0);
         for_each_chunk([&](std::size_t k, std::size_t begin, std::size_t end) {
-            for (std::size_t i = 0; i < a.size(); ++i) {
-                double sum = 0;
-                for (std::size_t row = begin; row < end; ++row) sum += (*a[i])[row] * weights_[row] * b[row];
-                parts[k * a.size() + i] = sum;
-            }
+            const Eigen::ArrayXd weighted = segment(weights_, begin, end) * segment(b, begin, end);
+            for (std::size_t i = 0; i < a.size(); ++i) parts[k * a.size() + i] = (segment(*a[i], begin, end) * weighted).sum();
         });
         for (std::size_t k = 0; k < chunks; ++k)
             for (std::size_t i = 0; i < a.size(); ++i) sums[i] += parts[k * a.size() + i];
@@ -99,8 +101,8 @@ private:
 
     void subtract(const std::vector<const Vector*>& a, const Vector& factors, Vector& b) const {
         for_each_chunk([&](std::size_t, std::size_t begin, std::size_t end) {
-            for (std::size_t i = 0; i < a.size(); ++i)
-                for (std::size_t row = begin; row < end; ++row) b[row] -= factors[i] * (*a[i])[row];
+            Eigen::Map<Eigen::ArrayXd> out(b.data() + begin, static_cast<Eigen::Index>(end - begin));
+            for (std::size_t i = 0; i < a.size(); ++i) out -= factors[i] * segment(*a[i], begin, end);
         });
     }
 
