@@ -126,9 +126,10 @@ int32_t lcl_operator_block_count(lcl_operator A) { return A ? static_cast<int32_
 
 lcl_status lcl_operator_get_scheme(lcl_operator A, lcl_scheme_options* options) {
     return guarded([&] {
-        const SchemeOptions& scheme = required(A, "A")->system->scheme;
+        const LimitSystem& system = *required(A, "A")->system;
+        const SchemeOptions& scheme = system.scheme;
         lcl_scheme_options out = LCL_SCHEME_OPTIONS_INIT;
-        out.scheme = static_cast<lcl_scheme>(static_cast<int>(scheme.scheme) + 1);
+        if (system.origin == Origin::scheme) out.scheme = static_cast<lcl_scheme>(static_cast<int>(scheme.scheme) + 1);
         out.mask = scheme.mask == DooSabinMask::classic ? LCL_MASK_CLASSIC : LCL_MASK_CATMULL;
         out.alpha = scheme.alpha;
         out.lambda = scheme.lambda;

@@ -180,7 +180,7 @@ private:
     void conjugate_gradients() {
         const Part part = plan_.smooth;
         double weight = 0;  // sums are compared relative to the sum of the scaling
-        for (const double d : plan_.scaling) weight += d;
+        for (Index row = part.first_row; row < part.end_row(); ++row) weight += plan_.scaling[row];
         Field p = field(x_, real_), q = field(x_, real_), x = field(m_, real_), r = field(m_, real_);
         ChannelValues found = A_.cg_apply(p, q, part), expected(channels_), ones(channels_, 0.5);
         for (int c = 0; c < channels_; ++c) expected[c] = scaled_dot(x_, ax_, c) / weight, found[c] /= weight;
