@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+#include <optional>
+
+#include "host/cli/channels.h"
+#include "host/cli/commands.h"
+#include "host/cli/failure.h"
+#include "host/cli/option_names.h"
+#include "host/cli/scheme_choice.h"
+#include "host/cli/solve_step.h"
+
+namespace lcl::cli {
+
+namespace {
+
+int levels_of(const Options& options) { return options.has("--levels") ? options.texture_levels : options.octaves - 1; }
+
+lcl_texture_options texture_options(const Options& options, SolveProgress& state) {
+    lcl_texture_options texture = LCL_TEXTURE_OPTIONS_INIT;
+    texture.octaves = options.octaves;
+    texture.levels = levels_of(options);
+    texture.frequency = options.frequency;
+    texture.seed = options.seed;
+    texture.colours = options.colours.empty() ? nullptr : options.colours.data();
+    texture.colour_count = options.colours.size() / 3;
+    texture.precision = options.precision;
+    texture.tolerance = options.tolerance;
+    texture.max_iterations = options.max_iterations;
+    texture.keep_going = options.keep_going;
+    texture.progress = on_solve_progress;
+    texture.progress_user = &state;
+    return texture;
+}
+
+void note_texture(Job& job) {
+    const Options& options = job.options;
+    job.report.set_parameter("octaves", static_cast<std::int64_t>(options.octaves));
+    job.report.set_parameter("frequency", options.frequency);
+    job.report.set_parameter("levels", static_cast<std::int64_t>(levels_of(options)));
+    if (options.has("--colors")) job.report.set_parameter("colors", options.colours);
+    job.report.set_parameter("seed", static_cast<std::int64_t>(options.seed));
+    job.report.set_parameter("on_mesh", options.on_mesh);
+    job.report.set_parameter("tolerance", options.tolerance);
+    job.report.set_parameter("max_iter", static_cast<std::int64_t>(options.max_iterations));
+    job.report.set_parameter("precision", std::string(precision_name(options.precision)));
+}
+
+/// The textured mesh, and the failure that --keep-going goes past.
+struct Textured {
+    Mesh mesh;
+    std::optional<Failure> failure;
+};
+
+Textured make_texture(Job& job, lcl_context context, lcl_mesh mesh, const lcl_scheme_options& scheme) {
+    SolveProgress state{&job.terminal.progress(), 0};
+    const lcl_texture_options options = texture_options(job.options, state);
+    lcl_solve_report report = LCL_SOLVE_REPORT_INIT;
+    lcl_mesh handle = nullptr;
+    const Phase phase(job, &Seconds::solve, "making the texture", context);
+    const lcl_status status = lcl_texture(context, mesh, &scheme, &options, &handle, &report);
+    Textured textured{Mesh(handle), std::nullopt};
+    if (status != LCL_OK && !is_result(status)) check_of_input(job, status);
+    note_solve(job, report, {});
+    if (status != LCL_OK) textured.failure = failure_of_result(status, report);
+    if (textured.failure && !(job.options.keep_going && textured.mesh)) throw *textured.failure;
+    return textured;
+}
+
+/// The first vertices of the refined mesh are those of IN.
+void take_over(lcl_mesh mesh, lcl_mesh textured) {
+    const std::vector<std::string> there = all_channels(textured);
+    std::vector<double> values(static_cast<std::size_t>(lcl_mesh_vertex_count(textured)));
+    for (const char* name : {"red", "green", "blue", "noise"}) {
+        const auto place = std::find(there.begin(), there.end(), name) - there.begin();
+        check(lcl_mesh_get_property(textured, static_cast<std::int32_t>(place), values.data()));
+        check(lcl_mesh_set_property(mesh, name, values.data()));
+    }
+}
+
+}  // namespace
+
+void run_texture(Job& job) {
+    DeviceOpening device(job);
+    const Mesh mesh = read_sound_input(job);
+    if (job.options.on_mesh) check_output_format(job, mesh.get());
+    note_texture(job);
+    SchemeChoice scheme = choose_scheme(job, mesh.get());
+    Context context = device.finish();
+    resolve_alpha(job, context, mesh.get(), scheme.options);
+    say_scheme(job);
+    const Textured textured = make_texture(job, context.get(), mesh.get(), scheme.options);
+    job.terminal.say("textured", counted(job.options.octaves, "octave", "octaves") + " on " + counted(levels_of(job.options), "level", "levels") + ": " +
+                                     counted(lcl_mesh_vertex_count(textured.mesh.get()), "vertex", "vertices"));
+    warn_of_notes(job, textured.mesh.get());
+    if (job.options.on_mesh) take_over(mesh.get(), textured.mesh.get());
+    write_output(job, job.options.on_mesh ? mesh.get() : textured.mesh.get());
+    if (textured.failure) throw *textured.failure;
+}
+
+}  // namespace lcl::cli
