@@ -4,8 +4,8 @@
 //
 // One work-group owns one block of rows and writes one norm; x and y differ, so a sweep never reads what it writes. d may be y: each row of d is read before that row of y is written.
 // The result does not depend on scheduling. A float sweep leaves a residual of some 1e-7 of the field's size.
+#include "chain.cl.h"
 #include "reduce.cl.h"
-#include "rows.cl.h"
 
 #define LCL_RELAX_PLUS(row, ax, own, third_term)                                            \
     {                                                                                       \
@@ -40,20 +40,12 @@ __kernel __attribute__((reqd_work_group_size(LCL_GROUP, 1, 1))) void lcl_relax_t
     LCL_GROUP_STORE_MAX(LCL_SQUARE(worst), scratch, norms, first_block + get_group_id(0));
 }
 
-/// One phase of a chain of sweeps that follow each other through the blocks, so that rows are still in cache when the next sweep takes them (level-based blocking of matrix powers: Alappat
-/// et al. 2022). Sweep s reads `even` (s even) or `odd` and writes the other one, whose old rows are its d. In phase t it takes the blocks from t * width - s * lag on, `width` of them,
-/// where they exist. With a lag of the blocks that rows reach plus 2 * width, all that it reads was finished two phases before, and all that it overwrites had its last reader then.
-/// Work-group (i, k): block i of these, sweep first_sweep + k. chain: a, b, b_jacobi, c of each sweep. norms: norm_stride a sweep, at the block's number.
-__kernel __attribute__((reqd_work_group_size(LCL_GROUP, 1, 1))) void lcl_relax_phase(const int phase, const int first_sweep, const int width, const int lag, const int first_block,
-                                                                                    const int block_count, const int norm_stride, LCL_STENCILS, const __global real *restrict chain,
+/// One phase of a chain of sweeps (chain.cl.h), three-term: each sweep's d is what it overwrites. chain: a, b, b_jacobi, c of each sweep. norms: norm_stride a sweep, at the block's number.
+__kernel __attribute__((reqd_work_group_size(LCL_GROUP, 1, 1))) void lcl_relax_phase(LCL_PHASE, const int norm_stride, LCL_STENCILS, const __global real *restrict chain,
                                                                                     const __global realn *restrict m, __global realn *even, __global realn *odd,
                                                                                     __global real *restrict norms) {
     LCL_SCRATCH(real, scratch)
-    const int lane = get_local_id(0);
-    const int sweep = first_sweep + (int)get_group_id(1);
-    const int index = phase * width - sweep * lag + (int)get_group_id(0);
-    if (index < 0 || index >= block_count) return;
-    const lcl_block block = blocks[first_block + index];
+    LCL_PHASE_BLOCK
     const real a = chain[4 * sweep], b = chain[4 * sweep + 1], b_jacobi = chain[4 * sweep + 2], c = chain[4 * sweep + 3];
     const __global realn *x = sweep % 2 == 0 ? even : odd;
     __global realn *y = sweep % 2 == 0 ? odd : even;

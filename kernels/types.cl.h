@@ -55,6 +55,7 @@ typedef LCL_REAL real; /* norms */
 
 #ifdef LCL_HAS_DOUBLE
 typedef LCL_VECTOR(double) sumn; /* sums over many rows */
+typedef double sum_real;
 #if LCL_WIDTH == 1
 #define LCL_TO_SUM(value) ((double)(value))
 #else
@@ -62,6 +63,7 @@ typedef LCL_VECTOR(double) sumn; /* sums over many rows */
 #endif
 #else
 typedef LCL_VECTOR(float) sumn;
+typedef float sum_real;
 #define LCL_TO_SUM(value) (value)
 #endif
 
@@ -94,6 +96,9 @@ inline realn lcl_minus(realn a) { a.hi = -a.hi; a.lo = -a.lo; return a; }
 inline realn lcl_widen(floatn a) { realn out; out.hi = a; out.lo = (floatn)(0); return out; }
 inline floatn lcl_narrow(realn a) { return a.hi + a.lo; }
 inline real lcl_inverse(weight w) { return 1.0f / w.hi; }
+inline int lcl_is_zero(weight w) { return w.hi == 0; }
+inline sumn lcl_to_sum(realn a) { return lcl_narrow(a); }
+inline sum_real lcl_weight_to_sum(weight w) { return w.hi; }
 
 #else
 
@@ -105,6 +110,9 @@ inline realn lcl_scale(weight w, realn a) { return w * a; }
 inline realn lcl_zero(void) { return (realn)(0); }
 inline realn lcl_minus(realn a) { return -a; }
 inline real lcl_inverse(weight w) { return 1 / w; }
+inline int lcl_is_zero(weight w) { return w == 0; }
+inline sumn lcl_to_sum(realn a) { return LCL_TO_SUM(a); }
+inline sum_real lcl_weight_to_sum(weight w) { return w; }
 #if LCL_WIDTH == 1
 inline realn lcl_widen(floatn a) { return (realn)(a); }
 inline floatn lcl_narrow(realn a) { return (floatn)(a); }

@@ -3,9 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <optional>
 
+#include "host/apply/real_values.h"
 #include "host/parallel.h"
 #include "kernels/types.cl.h"
 
@@ -15,8 +15,6 @@ namespace {
 constexpr int cpu_schedule_chunk = 256;  // rows of a Gauss-Seidel step that one work-item of a CPU takes
 constexpr Index phase_blocks_per_unit = 6;
 constexpr Index blocks_per_unit = 8;  // of a small mesh
-
-bool is_double(const Context& context, Real real) { return real == Real::full || (real == Real::wide && context.device().has_double); }
 
 /// A scalar, a row of them, or the coefficients of a chain, in a kernel's own type, by value.
 struct RealValue {
@@ -46,15 +44,6 @@ RealValue row_value(bool as_double, const ChannelBlock& block, const ChannelValu
     RealValue row = real_value(as_double, {at(0), at(1), at(2), at(3)});
     if (block.width == 8) row.append(as_double, {at(4), at(5), at(6), at(7)});
     return row;
-}
-
-/// What a kernel has written.
-double real_at(const unsigned char* place, bool as_double) {
-    float narrow;
-    double value;
-    if (as_double) std::memcpy(&value, place, sizeof value);
-    else std::memcpy(&narrow, place, sizeof narrow), value = narrow;
-    return value;
 }
 
 void set_argument(cl_kernel kernel, unsigned place, const RealValue& value) { set_argument_bytes(kernel, place, value.bytes.data(), value.size); }
@@ -181,14 +170,14 @@ void DeviceOperator::sweep(const Sweep& s, const Field& m, const Field& x, const
 }
 
 // The rows of all sweeps of a phase have to stay in cache: each sweep's own blocks and those up to the next one's.
-DeviceOperator::Phases DeviceOperator::phases(std::size_t sweeps, const Field& field, const Part& part) const {
+DeviceOperator::Phases DeviceOperator::phases(std::size_t sweeps, const Field& field, const Part& part, int fields) const {
     const Index all = std::max(1, part.block_count);
     const Phases one_by_one{all, all, std::min<Index>(static_cast<Index>(sweeps), LCL_CHAIN)};
     const bool is_smooth = part.first_block == plan_->smooth.first_block && part.block_count == plan_->smooth.block_count;
     if (!is_smooth || part.row_count == 0) return one_by_one;
     std::size_t widest = 0;
     for (std::size_t b = 0; b < field.blocks().size(); ++b) widest = std::max(widest, field.row_bytes(b));
-    const std::size_t row_bytes = 3 * widest + sizeof(Index) * plan_->indices.size() / part.row_count;
+    const std::size_t row_bytes = fields * widest + sizeof(Index) * plan_->indices.size() / part.row_count;
     if (row_bytes * part.row_count <= shape_.cache_bytes) return one_by_one;  // all of it stays in cache
     for (Index depth = one_by_one.sweeps; depth > 1; --depth) {
         const Index width = (shape_.phase_blocks + depth - 1) / depth, lag = plan_->reach + 2 * width;

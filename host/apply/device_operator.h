@@ -3,11 +3,13 @@
 #pragma once
 
 #include <array>
+#include <functional>
 #include <map>
 #include <memory>
 #include <vector>
 
 #include "host/apply/host_operator.h"
+#include "host/apply/series_steps.h"
 #include "host/field/field.h"
 #include "host/operator/schedule.h"
 
@@ -30,6 +32,14 @@ struct Sweep {
 
 /// One number a channel.
 using ChannelValues = std::vector<double>;
+
+/// Of one step of a series, over all rows.
+struct SeriesSums {
+    ChannelValues linear, square;  ///< sum D_ii y_i, sum D_ii y_i^2
+};
+
+/// Called with the steps that are done; waits for them. false stops the series.
+using SeriesProgress = std::function<bool(std::int64_t)>;
 
 /// The plan's arrays on a device. All fields have the plan's vertex_count rows; all calls but norms() and sums return at once.
 class DeviceOperator {
@@ -56,11 +66,23 @@ public:
     struct Phases {
         Index width, lag, sweeps;
     };
-    Phases phases(std::size_t sweeps, const Field& field, const Part& part) const;
+    /// fields: how many a sweep touches.
+    Phases phases(std::size_t sweeps, const Field& field, const Part& part, int fields = 3) const;
     /// r = m - A x in double or pairs of floats, m and x wide or single, r single; norms as above.
     void wide_residual(const Field& m, const Field& x, Field& r, const Part& part);
     /// x += d on the part's rows; x wide or single, d single.
     void correct(const Field& d, Field& x, const Part& part);
+    /// Steps of a series from y_0 = input to y_count in `out`, over all rows, in turns with `scratch`; no steps: a copy. All three differ; what out and scratch held
+    /// is lost, also where progress stops it (the result is then false). One pass a step; chains of steps follow each other through the rows as those of chain().
+    bool series(const SeriesSteps& steps, const Field& input, Field& out, Field& scratch, const SeriesProgress& progress = {});
+    /// The same (SeriesThird::older) with the sums over every step's y, weighted with the plan's scaling. Waits.
+    std::vector<SeriesSums> series_with_sums(const SeriesSteps& steps, const Field& input, Field& out, Field& scratch);
+    /// The same (SeriesThird::older) in place on `difference`, whose last step also writes frame = target + difference. At least one step.
+    void morph(const SeriesSteps& steps, const Field& target, Field& difference, Field& scratch, Field& frame);
+    /// difference *= rho, frame = target + difference.
+    void morph_blend(double rho, const Field& target, Field& difference, Field& frame);
+    /// difference = a - b.
+    void subtract(const Field& a, const Field& b, Field& difference);
     /// GS-PIA over the rows of the schedule, in place; no norms.
     void relax_rows(const Schedule& schedule, const Field& m, Field& x);
     /// Waits; largest row norms that the last sweep, wide_residual or cg_update of a field like `like` left for the part. Normalised units;
@@ -79,13 +101,22 @@ private:
         Buffer rows, offsets, columns, weights, inverse_diagonal;
     };
     struct Partials {
-        std::vector<Buffer> norms, sums;
+        std::vector<Buffer> norms, sums, series_sums;
     };  // a channel block each
     const Buffer& weights(Real real, bool weighted_rows);
     const Buffer& scaling(Real real);
     Partials& partials(const Field& field);
+    Partials& series_partials(const Field& field);
     void enqueue_phases(const Phases& phases, const Part& part, cl_kernel relax);
     void run_phases(const Phases& phases, const Sweep* sweeps, const Field& m, Field& x, Field& y, const Part& part);
+    std::vector<Part> series_parts() const;
+    template <class Prepare>
+    bool run_series(const SeriesSteps& steps, const Field& input, Field& out, Field& scratch, const SeriesProgress& progress, const Prepare& prepare);
+    template <class Prepare>
+    void run_series_chain(const SeriesSteps& steps, std::int64_t first, const Phases& phases, const Part& part, const std::array<const Field*, 3>& fields,
+                          const Prepare& prepare);
+    void read_series_sums(const Field& like, const Part& part, Index sweeps, SeriesSums* sums);
+    void launch_rows(const char* name, const Field& like, const std::function<void(cl_kernel, std::size_t)>& set);
     std::vector<ResidualNorms> norms_of_sweeps(const Field& like, const Part& part, std::size_t sweeps);
     ScheduleArrays& schedule_arrays(const Schedule& schedule, Real real);
     ChannelValues sums(const Field& field, const Part& part);

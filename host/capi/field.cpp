@@ -4,23 +4,15 @@
 #include <limits>
 #include <numeric>
 
-#include "host/capi/handles.h"
+#include "host/capi/arguments.h"
 #include "host/field/host_rows.h"
 
 using namespace lcl;
 
 namespace {
 
-bool same(const Transform& a, const Transform& b) { return a.centre == b.centre && a.scale == b.scale; }
-
 /// a + c is 1, as for PIA and its relatives, but for the rounding of three-term recurrences such as Chebyshev's (1 + p) x - p d.
 bool is_affine(double a, double c) { return std::abs(a + c - 1) <= 4 * std::numeric_limits<double>::epsilon() * (std::abs(a) + std::abs(c)); }
-
-const Transform& transform_of(lcl_field field, const char* name) {
-    if (!field->transform)
-        throw InvalidArgument(std::string("the field ") + name + " holds no values yet: upload them, or give it a centre and scale by lcl_field_match");
-    return *field->transform;
-}
 
 void check_type(lcl_type type, std::size_t stride, int channels) {
     if (type != LCL_TYPE_DOUBLE && type != LCL_TYPE_FLOAT) throw InvalidArgument("type is " + std::to_string(type) + ", it is 0 (double) or 1 (float)");
@@ -55,16 +47,6 @@ void for_each_stretch(const RowList& list, const Body& body) {
         end = begin + 1;
         while (end < list.order.size() && list.rows[list.order[end]] == list.rows[list.order[end - 1]] + 1) ++end;
         body(begin, end);
-    }
-}
-
-void check_same_operator(lcl_operator A, std::initializer_list<lcl_field> fields) {
-    const lcl_field first = *fields.begin();
-    for (const lcl_field field : fields) {
-        if (field == nullptr) continue;
-        if (field->A.get() != A) throw InvalidArgument("a field of another operator was given");
-        if (field->field.channels() != first->field.channels() || field->field.real() != first->field.real())
-            throw InvalidArgument("the fields differ in channels or precision");
     }
 }
 

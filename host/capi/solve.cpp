@@ -4,25 +4,13 @@
 #include <cmath>
 #include <limits>
 
-#include "host/capi/handles.h"
+#include "host/capi/arguments.h"
 
 using namespace lcl;
 
 namespace {
 
 constexpr double isolated_range = 1e37;  // as in to_plan_order: isolated vertices may be anywhere
-
-Precision inner_precision(lcl_precision precision) {
-    if (precision < LCL_PRECISION_MIXED || precision > LCL_PRECISION_DOUBLE)
-        throw InvalidArgument("precision is " + std::to_string(precision) + ", it goes from 0 to 2");
-    return static_cast<Precision>(precision);
-}
-
-void check_channels(int32_t channels, std::size_t stride, const char* name) {
-    if (channels < 1) throw InvalidArgument("channels is " + std::to_string(channels) + ", it is at least 1");
-    if (stride < static_cast<std::size_t>(channels))
-        throw InvalidArgument(std::string(name) + " is " + std::to_string(stride) + ", less than the " + std::to_string(channels) + " channels");
-}
 
 SolveOptions inner_options(const lcl_solve_options& given) {
     if (given.solver < LCL_SOLVER_AUTO || given.solver > LCL_SOLVER_CG)

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "host/mesh/normals.h"
 #include "host/parallel.h"
 
 namespace lcl {
@@ -45,38 +46,10 @@ void mark_given_creases(const Topology& topology, const std::vector<std::array<I
     }
 }
 
-using Vector = std::array<double, 3>;
-
-Vector newell_normal(const PolygonMesh& mesh, Index f) {
-    const auto point = [&](Index h) { return &mesh.positions[3 * static_cast<std::size_t>(mesh.face_vertices[h])]; };
-    const Index begin = mesh.face_offsets[f], end = mesh.face_offsets[f + 1];
-    const double* origin = point(begin);  // differences first: faces far from the origin of space keep their digits
-    Vector normal{0, 0, 0};
-    for (Index h = begin + 1; h + 1 < end; ++h) {
-        const double *p = point(h), *q = point(h + 1);
-        for (int c = 0; c < 3; ++c) {
-            const int i = (c + 1) % 3, j = (c + 2) % 3;
-            normal[c] += (p[i] - origin[i]) * (q[j] - origin[j]) - (p[j] - origin[j]) * (q[i] - origin[i]);
-        }
-    }
-    return normal;
-}
-
-/// Angle in radians; 0 where a normal is zero, so that faces without area make no crease.
-double angle_between(const Vector& a, const Vector& b) {
-    double dot = 0, cross = 0;
-    for (int c = 0; c < 3; ++c) {
-        const int i = (c + 1) % 3, j = (c + 2) % 3;
-        dot += a[c] * b[c];
-        cross = std::hypot(cross, a[i] * b[j] - a[j] * b[i]);
-    }
-    return std::atan2(cross, dot);
-}
-
 void mark_creases_by_angle(const PolygonMesh& mesh, const Topology& topology, double degrees, Features& features) {
     Array<Vector> normals(topology.face_count);
     parallel_for(topology.face_count, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t f = begin; f < end; ++f) normals[f] = newell_normal(mesh, static_cast<Index>(f));
+        for (std::size_t f = begin; f < end; ++f) normals[f] = newell_normal(mesh, mesh.positions, static_cast<Index>(f));
     });
     parallel_for(topology.edge_count, [&](std::size_t begin, std::size_t end) {
         for (std::size_t e = begin; e < end; ++e) {

@@ -55,4 +55,10 @@ std::unique_ptr<LimitSystem> make_limit_system(std::shared_ptr<Context> context,
     return system;
 }
 
+void refuse_ghosts(const Plan& plan) {
+    if (plan.row_count < plan.vertex_count)
+        throw Unsupported("this operator has rows for " + std::to_string(plan.row_count) + " of its " + std::to_string(plan.vertex_count) +
+                          " vertices: drive its parts by single sweeps (lcl_operator_step) and exchange the ghosts between them");
+}
+
 }  // namespace lcl

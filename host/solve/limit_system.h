@@ -55,6 +55,9 @@ struct LimitSystem {
 std::unique_ptr<LimitSystem> make_limit_system(std::shared_ptr<Context> context, const PolygonMesh& mesh, const Topology& topology, const Features& features,
                                                const SchemeOptions& scheme, PlanOptions plan_options);
 
+/// Unsupported where A has ghosts, whose values come from elsewhere: neither solves nor filters go without them.
+void refuse_ghosts(const Plan& plan);
+
 /// Bounds and estimates lambda_min by a short Lanczos run on the device: some 20 passes at the first call, over the weakest part alone of a large mesh.
 const Spectrum& spectrum_of(LimitSystem& system);
 

@@ -326,12 +326,6 @@ void certify(LimitSystem& system, const SolveOptions& options, SolveReport& repo
     if (options.certify && has_inverse) report.surface_error_bound = error_bound(system, report.max_error);
 }
 
-void refuse_ghosts(const Plan& plan) {
-    if (plan.row_count < plan.vertex_count)
-        throw Unsupported("this operator has rows for " + std::to_string(plan.row_count) + " of its " + std::to_string(plan.vertex_count) +
-                          " vertices: drive its parts by single sweeps (lcl_operator_step) and exchange the ghosts between them");
-}
-
 }  // namespace
 
 SolveReport solve_host(LimitSystem& system, const double* M, std::size_t stride, int channels, const SolveOptions& options, bool warm_start, double* P,

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "host/capi/arguments.h"
+
+#include <algorithm>
+
+namespace lcl {
+
+Precision inner_precision(lcl_precision precision) {
+    if (precision < LCL_PRECISION_MIXED || precision > LCL_PRECISION_DOUBLE)
+        throw InvalidArgument("precision is " + std::to_string(precision) + ", it goes from 0 to 2");
+    return static_cast<Precision>(precision);
+}
+
+void check_channels(int32_t channels, std::size_t stride, const char* name) {
+    if (channels < 1) throw InvalidArgument("channels is " + std::to_string(channels) + ", it is at least 1");
+    if (stride < static_cast<std::size_t>(channels))
+        throw InvalidArgument(std::string(name) + " is " + std::to_string(stride) + ", less than the " + std::to_string(channels) + " channels");
+}
+
+const Transform& transform_of(lcl_field field, const char* name) {
+    if (!field->transform)
+        throw InvalidArgument(std::string("the field ") + name + " holds no values yet: upload them, or give it a centre and scale by lcl_field_match");
+    return *field->transform;
+}
+
+void check_same_operator(lcl_operator A, std::initializer_list<lcl_field> fields) {
+    const lcl_field first = *fields.begin();
+    for (const lcl_field field : fields) {
+        if (field == nullptr) continue;
+        if (field->A.get() != A) throw InvalidArgument("a field of another operator was given");
+        if (field->field.channels() != first->field.channels() || field->field.real() != first->field.real())
+            throw InvalidArgument("the fields differ in channels or precision");
+    }
+}
+
+void require_scaling(const Plan& plan, const char* what) {
+    const bool has_rows = plan.row_count > plan.isolated_count;
+    if (has_rows && std::all_of(plan.scaling.begin(), plan.scaling.end(), [](double d) { return d == 0; }))
+        throw InvalidArgument(std::string(what) + " need the scaling D that makes D A symmetric, and this operator was made without: give lcl_rows.scaling");
+}
+
+}  // namespace lcl
