@@ -12,12 +12,6 @@ namespace {
 
 const double grid_diagonal_6 = std::sqrt(6.0 * 6.0 + 6.0 * 6.0 + 0.8 * 0.8);
 
-std::string coloured_tetrahedron_ply() {
-    return "ply\nformat ascii 1.0\nelement vertex 4\nproperty double x\nproperty double y\nproperty double z\nproperty double red\nproperty double green\n"
-           "property double blue\nproperty float quality\nelement face 4\nproperty list uchar int vertex_indices\nend_header\n"
-           "0 0 0 1 0 0 5\n1 0 0 0 1 0 -3\n0 1 0 0 0 1 7\n0 0 1 0.5 0.5 0.5 1\n3 0 2 1\n3 0 1 3\n3 1 2 3\n3 2 0 3\n";
-}
-
 }  // namespace
 
 TEST_CASE("help lists the commands of this version and the program says what it is", "[cli]") {

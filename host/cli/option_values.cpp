@@ -96,8 +96,8 @@ Equaliser parse_equaliser(const std::string& text) {
     Equaliser equaliser;
     for (const std::string& part : split(halves.front(), ',')) equaliser.weights.push_back(number(part));
     if (halves.size() == 2) equaliser.remainder = number(halves.back());
-    if (equaliser.weights.size() > most_terms + 1u)
-        throw std::invalid_argument(std::to_string(equaliser.weights.size()) + " weights are more than " + std::to_string(most_terms + 1));
+    if (equaliser.weights.size() > static_cast<std::size_t>(most_terms))
+        throw std::invalid_argument(std::to_string(equaliser.weights.size()) + " weights are more than " + std::to_string(most_terms));
     return equaliser;
 }
 
