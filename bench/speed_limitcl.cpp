@@ -196,6 +196,41 @@ void time_local_solves(const Arguments& arguments) {
     for (const bool together : {true, false}) time_local(arguments, together ? "local.together" : "local.spread", shape, vertices_to_move(shape, together));
 }
 
+/// Filters of the mesh expansion on fields, of three and of eight channels, each beside the device's copy.
+void time_filters(const Arguments& arguments) {
+    const Shape shape = quad_sphere(arguments.level);
+    Interpolation problem(open_device(arguments.device), shape, Scheme::catmull_clark);
+    const lcl_operator A = problem.A.get();
+    DeviceCopy copy(problem.context, problem.vertex_count);
+    const FieldHandle difference = make_field(problem.A), eight = make_field(problem.A, 8), eight_out = make_field(problem.A, 8);
+    std::vector<double> values(8 * static_cast<std::size_t>(problem.vertex_count));
+    for (std::size_t v = 0; v < values.size() / 8; ++v)
+        for (int c = 0; c < 8; ++c) values[8 * v + c] = shape.points[3 * v + c % 3] + c;
+    check(lcl_field_upload(eight.get(), values.data(), LCL_TYPE_DOUBLE, 0));
+    check(lcl_field_match(problem.P.get(), problem.M.get()));
+    check(lcl_field_subtract(problem.P.get(), problem.M.get(), difference.get()));
+    const double weights[8] = {1, 0.9, 1.2, 0.7, 1.1, 0.8, 1.3, 0.6};
+    lcl_expand_options equaliser = LCL_EXPAND_OPTIONS_INIT;
+    equaliser.weights = weights;
+    equaliser.weight_count = 8;
+    double energies[16 * 3];
+    const auto timed = [&](Laps& laps, const char* name, const auto& call) {
+        laps.time_warm(name, [&] {
+            check(call());
+            problem.finish();
+        });
+    };
+    run_rounds(arguments.runs, [&](Laps& laps) {
+        laps.add("filters.copy", copy.seconds());
+        timed(laps, "filters.denoise", [&] { return lcl_denoise_field(A, problem.M.get(), nullptr, problem.P.get()); });
+        timed(laps, "filters.denoise.eight", [&] { return lcl_denoise_field(A, eight.get(), nullptr, eight_out.get()); });
+        timed(laps, "filters.equaliser", [&] { return lcl_expand_field(A, problem.M.get(), &equaliser, problem.P.get()); });
+        timed(laps, "filters.spectrum", [&] { return lcl_spectrum_field(A, problem.M.get(), 16, energies); });
+        timed(laps, "filters.sharpen", [&] { return lcl_sharpen_field(A, problem.M.get(), nullptr, problem.P.get()); });
+        timed(laps, "filters.morph", [&] { return lcl_morph_field(A, 2, 0.9, problem.M.get(), difference.get(), problem.P.get()); });
+    });
+}
+
 /// Everything a caller with arrays does, at the start of a process and again.
 void time_first_call(const Arguments& arguments) {
     const Shape shape = quad_sphere(arguments.level);
@@ -249,7 +284,8 @@ void run_part(const Arguments& arguments) {
     const std::vector<std::pair<const char*, void (*)(const Arguments&)>> parts = {
         {"device", describe_device},     {"solve", time_solve}, {"shapes", time_other_shapes},
         {"growth", time_growth},         {"setup", time_setup}, {"fields", time_fields},
-        {"first-call", time_first_call}, {"write", write_q},    {"local", time_local_solves}};
+        {"first-call", time_first_call}, {"write", write_q},    {"local", time_local_solves},
+        {"filters", time_filters}};
     for (const auto& [name, part] : parts)
         if (arguments.part == name) return part(arguments);
     throw std::runtime_error("'" + arguments.part + "' is not a part");

@@ -4,7 +4,6 @@
 #include <algorithm>
 
 #include "host/capi/arguments.h"
-#include "host/filter/polynomial.h"
 
 using namespace lcl;
 
@@ -76,9 +75,7 @@ lcl_status lcl_morph_field(lcl_operator A, int32_t m, double rho, lcl_field to, 
         const bool is_difference = std::all_of(own.centre.begin(), own.centre.end(), [](double centre) { return centre == 0; });
         if (!is_difference || own.scale != target.scale)
             throw InvalidArgument("difference is not one of fields in the centre and scale of `to`: begin with lcl_field_subtract(from, to, difference)");
-        const Polynomial step = morph_step(m, rho);
-        A->system->A->morph(step.steps, to->field, difference->field,
-                            A->system->work_field(LimitSystem::Purpose::scratch, to->field.channels(), to->field.real()), frame->field);
+        morph_field(*A->system, m, rho, to->field, difference->field, frame->field);
         frame->transform = target;
         return LCL_OK;
     });

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <numeric>
-#include <string>
 
 #include "host/field/host_rows.h"
 
@@ -19,17 +18,23 @@ Transform transform_after(const Polynomial& p, Transform transform) {
     return transform;
 }
 
+// Every run of a stage reads what the one before it wrote; the last writes `out`.
 void filter_field(LimitSystem& system, const Polynomial& p, const Field& x, Field& out, const PassProgress& progress) {
+    std::int64_t runs = 0, passes_done = 0;
+    for (const Polynomial::Stage& stage : p.stages) runs += stage.times;
+    if (runs == 0) return out.copy_from(x);
     Field& scratch = work(system, LimitSystem::Purpose::scratch, x);
-    Field* const other = p.times > 1 ? &work(system, LimitSystem::Purpose::correction, x) : nullptr;
+    Field* const other = runs > 1 ? &work(system, LimitSystem::Purpose::correction, x) : nullptr;
     const Field* from = &x;
-    for (int time = 0; time < p.times; ++time) {
-        Field& to = (p.times - 1 - time) % 2 == 0 ? out : *other;
-        SeriesProgress chain_progress;
-        if (progress) chain_progress = [&, time](std::int64_t done) { return progress(time * p.steps.count() + done, p.pass_count()); };
-        if (!system.A->series(p.steps, *from, to, scratch, chain_progress)) throw Cancelled("cancelled by the caller");
-        from = &to;
-    }
+    for (const Polynomial::Stage& stage : p.stages)
+        for (int time = 0; time < stage.times; ++time) {
+            Field& to = --runs % 2 == 0 ? out : *other;
+            SeriesProgress chain_progress;
+            if (progress) chain_progress = [&](std::int64_t done) { return progress(passes_done + done, p.pass_count()); };
+            if (!system.A->series(stage.steps, *from, to, scratch, chain_progress)) throw Cancelled("cancelled by the caller");
+            passes_done += stage.steps.count();
+            from = &to;
+        }
 }
 
 void filter_host(LimitSystem& system, const Polynomial& p, const double* x, std::size_t stride, int channels, Precision precision, double* out,
@@ -46,14 +51,9 @@ void filter_host(LimitSystem& system, const Polynomial& p, const double* x, std:
 }
 
 std::vector<double> term_energies(LimitSystem& system, const Field& x, const Transform& transform, int term_count) {
-    if (term_count < 1 || term_count > most_terms)
-        throw InvalidArgument("the energies of " + std::to_string(term_count) + " terms were asked for, it goes from 1 to " + std::to_string(most_terms));
     const Plan& plan = system.plan();
     const double weight = std::accumulate(plan.scaling.begin(), plan.scaling.end(), 0.0);
-    SeriesSteps steps = sum_of_terms(Series::representation, 0, 0).steps;
-    steps.repeated = sum_of_terms(Series::interpolation, 1, 1).steps.repeated;
-    steps.repetitions = term_count - 1;
-    const std::vector<SeriesSums> sums = system.A->series_with_sums(steps, x, work(system, LimitSystem::Purpose::correction, x),
+    const std::vector<SeriesSums> sums = system.A->series_with_sums(term_steps(term_count), x, work(system, LimitSystem::Purpose::correction, x),
                                                                     work(system, LimitSystem::Purpose::scratch, x));
     std::vector<double> energies;
     for (const SeriesSums& term : sums)

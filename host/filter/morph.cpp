@@ -6,7 +6,7 @@
 #include <string>
 
 #include "host/field/host_rows.h"
-#include "host/filter/polynomial.h"
+#include "host/filter/expansion.h"
 
 namespace lcl {
 namespace {
@@ -16,8 +16,8 @@ constexpr int most_frames = 1000000;
 void check(const MorphOptions& options) {
     if (options.frames < 1 || options.frames > most_frames)
         throw InvalidArgument("frames is " + std::to_string(options.frames) + ", it goes from 1 to " + std::to_string(most_frames));
-    for (const int m : options.m) morph_step(m, 1);
-    for (const double rho : options.rho) morph_step(0, rho);
+    for (const int m : options.m) check_morph(m, 1);
+    for (const double rho : options.rho) check_morph(0, rho);
 }
 
 template <class T>
@@ -90,13 +90,15 @@ private:
         if (options_.path == MorphPath::linear) return mix((step + 1.0) / options_.frames);
         const int m = entry(options_.m, step);
         if (options_.path == MorphPath::even) even_step(m, 1 - (step + 1.0) / options_.frames);
-        else A_.morph(morph_step(m, entry(options_.rho, step)).steps, *target_, *difference_, scratch(), *frame_);
+        else morph_field(system_, m, entry(options_.rho, step), *target_, *difference_, *frame_);
         download_rows(plan_, transform_, *frame_, {points_.data(), static_cast<std::size_t>(channels_)});
     }
 
     // rho_k = min(1, (1 - (k+1)/N) |Q_0 - to|_D / |Y_k|_D), Y_k = D (Q_k - to); 0 where Y_k = 0
     void even_step(int m, double share) {
-        const std::vector<SeriesSums> sums = A_.series_with_sums(morph_step(m, 1).steps, *difference_, *frame_, scratch());
+        if (m > most_factored) filter_field(system_, denoiser(m, 1, true), *difference_, *frame_), std::swap(*difference_, *frame_);
+        const SeriesSteps steps = m > most_factored ? SeriesSteps{SeriesThird::older, {{1, 0, 0}}, {}, 0} : morph_steps(m, 1);
+        const std::vector<SeriesSums> sums = A_.series_with_sums(steps, *difference_, *frame_, scratch());
         std::swap(*difference_, *frame_);
         double square = 0;
         for (int c = 0; c < std::min(channels_, 3); ++c) square += sums.back().square[c];
@@ -128,6 +130,17 @@ private:
 };
 
 }  // namespace
+
+void morph_field(LimitSystem& system, int m, double rho, const Field& target, Field& difference, Field& frame) {
+    check_morph(m, rho);
+    if (m > most_factored) {
+        filter_field(system, denoiser(m, 1, true), difference, frame);
+        std::swap(difference, frame);
+        return system.A->morph_blend(rho, target, difference, frame);
+    }
+    Field& scratch = system.work_field(LimitSystem::Purpose::scratch, difference.channels(), difference.real());
+    system.A->morph(morph_steps(m, rho), target, difference, scratch, frame);
+}
 
 void morph_host(LimitSystem& system, const double* from, const double* to, std::size_t stride, int channels, const MorphOptions& options,
                 const FrameSink& frame) {

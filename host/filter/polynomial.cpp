@@ -43,7 +43,8 @@ std::vector<int> scattered(int count) {
 }
 
 // D = prod over j = 0 .. m of (1 - w^j B), w = exp(2 pi i / (m + 1)): A for j = 0, 1 + B for j = (m + 1)/2, and 1 - 2 cos(2 pi j / (m + 1)) B + B^2 for each
-// conjugate pair. Factors that enlarge high frequencies alternate with those that do not, so that partial products stay below some multiple of m.
+// conjugate pair. Factors that enlarge high frequencies alternate with those that do not, so that partial products stay below some multiple of m (measured in
+// float: off by 2e-7 m of the field's size).
 std::vector<SeriesStep> filter_steps(int m) {
     std::vector<SeriesStep> steps{apply};
     if (m % 2 == 1) steps.push_back({2, -1, 0});
@@ -55,20 +56,27 @@ std::vector<SeriesStep> filter_steps(int m) {
     return steps;
 }
 
-// sum c_i B^i x by Horner: y = c_n x, then y = B y + c_i x; the first two in one step.
-Polynomial horner(std::vector<double> c) {
+// sum c_i B^i x: y = c_n x, then y = B y + c_i x; the first two in one step.
+SeriesSteps horner(std::vector<double> c) {
     while (c.size() > 1 && c.back() == 0) c.pop_back();
-    Polynomial p;
-    p.at_zero = c[0];
-    p.steps.third = SeriesThird::input;
+    SeriesSteps steps;
+    steps.third = SeriesThird::input;
     const std::size_t degree = c.size() - 1;
     if (degree == 0) {
-        if (c[0] != 1) p.steps.first.push_back({c[0], 0, 0});
-        return p;
+        if (c[0] != 1) steps.first.push_back({c[0], 0, 0});
+        return steps;
     }
-    p.steps.first.push_back({c[degree] + c[degree - 1], -c[degree], 0});
-    for (std::size_t i = degree - 1; i-- > 0;) p.steps.first.push_back({1, -1, c[i]});
-    return p;
+    steps.first.push_back({c[degree] + c[degree - 1], -c[degree], 0});
+    for (std::size_t i = degree - 1; i-- > 0;) steps.first.push_back({1, -1, c[i]});
+    return steps;
+}
+
+/// c_i = 1 for first <= i <= last, and c_0 as given.
+std::vector<double> band_coefficients(double at_zero, int first, int last) {
+    std::vector<double> c(static_cast<std::size_t>(last) + 1, 0.0);
+    c[0] = at_zero;
+    std::fill(c.begin() + first, c.end(), 1.0);
+    return c;
 }
 
 /// Coefficients of B^i from those of B^i A: A = 1 - B.
@@ -78,21 +86,32 @@ std::vector<double> without_a(const std::vector<double>& weights, double remaind
     return c;
 }
 
+/// B^first - B^(last + 1), the terms first .. last of the representation series.
+SeriesSteps representation_band(int first, int last) {
+    if (last - first > most_factored) {
+        std::vector<double> c(static_cast<std::size_t>(last) + 2, 0.0);
+        c[first] = 1;
+        c.back() = -1;
+        return horner(std::move(c));
+    }
+    SeriesSteps steps;
+    steps.first = filter_steps(last - first);
+    steps.repeated = {remain};
+    steps.repetitions = first;
+    return steps;
+}
+
 }  // namespace
 
 Polynomial sum_of_terms(Series series, int first, int last) {
     check_band(first, last, 0);
-    if (series == Series::interpolation && first < last) {
-        std::vector<double> c(static_cast<std::size_t>(last) + 1, 0.0);
-        std::fill(c.begin() + first, c.end(), 1.0);
-        return horner(std::move(c));
-    }
-    Polynomial p;
-    p.at_zero = first == 0 ? 1 : 0;
-    if (series == Series::representation) p.steps.first = filter_steps(last - first);
-    p.steps.repeated = {remain};
-    p.steps.repetitions = first;
-    return p;
+    const double at_zero = first == 0 ? 1 : 0;
+    if (series == Series::representation) return {{{representation_band(first, last)}}, at_zero};
+    if (first < last) return {{{horner(band_coefficients(at_zero, first, last))}}, at_zero};
+    SeriesSteps power;
+    power.repeated = {remain};
+    power.repetitions = first;
+    return {{{power}}, at_zero};
 }
 
 Polynomial equaliser(Series series, const std::vector<double>& weights, double remainder) {
@@ -101,17 +120,23 @@ Polynomial equaliser(Series series, const std::vector<double>& weights, double r
     for (std::size_t i = 0; i < weights.size(); ++i)
         if (!std::isfinite(weights[i])) throw InvalidArgument("weight " + std::to_string(i) + " of the equaliser is not finite");
     if (!std::isfinite(remainder)) throw InvalidArgument("the weight of the remainder is not finite");
-    return horner(series == Series::representation ? without_a(weights, remainder) : weights);
+    return {{{horner(series == Series::representation ? without_a(weights, remainder) : weights)}}, weights[0]};
 }
 
 Polynomial denoiser(int m, int k, bool plain) {
     check_range("m", m, 0);
     check_range("k", k, 0);
-    Polynomial p;
-    if (!plain) p.steps.first = {apply};
-    p.steps.repeated = filter_steps(m);
-    p.steps.repetitions = k;
-    return p;
+    if (m > most_factored) {
+        Polynomial p;
+        if (!plain) p.stages.push_back({term_steps(1), 1});
+        p.stages.push_back({representation_band(0, m), k});
+        return p;
+    }
+    SeriesSteps steps;
+    if (!plain) steps.first = {apply};
+    steps.repeated = filter_steps(m);
+    steps.repetitions = k;
+    return {{{steps}}};
 }
 
 Polynomial sharpener(int first, int last, int k) {
@@ -121,22 +146,24 @@ Polynomial sharpener(int first, int last, int k) {
     if (!(gain <= most_gain))
         throw InvalidArgument("sharpening by the terms " + std::to_string(first) + " to " + std::to_string(last) + ", " + std::to_string(k) +
                               " times, makes noise up to (last - first + 2)^k times larger, more than 10^6: take a narrower band or a smaller k");
-    std::vector<double> c(static_cast<std::size_t>(last) + 1, 0.0);
-    c[0] = 1;
-    std::fill(c.begin() + first, c.end(), 1.0);
-    Polynomial p = horner(std::move(c));
-    p.times = k;
-    return p;
+    return {{{horner(band_coefficients(1, first, last)), k}}};
 }
 
-Polynomial morph_step(int m, double rho) {
+void check_morph(int m, double rho) {
     check_range("m", m, 0);
     if (!(rho > 0 && rho <= 1)) throw InvalidArgument("rho is " + std::to_string(rho) + ", it lies above 0 and is at most 1");
-    Polynomial p;
-    p.at_zero = rho;
-    p.steps.first = filter_steps(m);
-    p.steps.first[0].b *= rho;
-    return p;
+}
+
+SeriesSteps morph_steps(int m, double rho) {
+    SeriesSteps steps;
+    steps.first = filter_steps(m);
+    steps.first[0].b *= rho;
+    return steps;
+}
+
+SeriesSteps term_steps(int term_count) {
+    check_range("the number of terms", term_count, 1);
+    return {SeriesThird::older, {apply}, {remain}, term_count - 1};
 }
 
 // A step of strength takes off about as much more of the eigenvalue 1/4, the middle frequencies of a regular mesh: gains 1, .82, .68, .47, .33, .19, .11, .08,

@@ -10,15 +10,23 @@ namespace lcl {
 
 enum class Series { representation, interpolation };  // order of lcl_series
 
-constexpr int most_terms = 100000;  // of a sum, m and k: beyond, nothing but rounding is left
+constexpr int most_terms = 100000;   // of a sum, m and k: beyond, nothing but rounding is left
+constexpr int most_factored = 16;    // m up to which D is a product of factors, whose rounding grows like m; beyond, D is summed up as Horner does
 
-/// p(B) x: the steps, run `times` times one after the other.
+/// p(B) x: stages one after the other, each `times` times.
 struct Polynomial {
-    SeriesSteps steps;
-    int times = 1;
+    struct Stage {
+        SeriesSteps steps;
+        int times = 1;
+    };
+    std::vector<Stage> stages;
     double at_zero = 1;  ///< p(0): what constants, where rows of A sum to 1, and vertices with A x = x are multiplied by
 
-    std::int64_t pass_count() const { return steps.count() * times; }
+    std::int64_t pass_count() const {
+        std::int64_t passes = 0;
+        for (const Stage& stage : stages) passes += stage.steps.count() * stage.times;
+        return passes;
+    }
 };
 
 /// The terms first .. last added up: B^i A (representation), B^i (interpolation). InvalidArgument unless 0 <= first <= last <= most_terms.
@@ -35,8 +43,13 @@ Polynomial denoiser(int m, int k, bool plain);
 /// can make of a high frequency.
 Polynomial sharpener(int first, int last, int k);
 
-/// rho D, m + 1 passes (eq. 9). InvalidArgument for m out of range or rho out of (0, 1].
-Polynomial morph_step(int m, double rho);
+/// rho D, m + 1 passes (eq. 9), in two fields; m <= most_factored.
+SeriesSteps morph_steps(int m, double rho);
+/// InvalidArgument for m out of 0 .. most_terms or rho out of (0, 1].
+void check_morph(int m, double rho);
+
+/// A, then B again and again: the terms of the representation series.
+SeriesSteps term_steps(int term_count);
 
 /// m and k of a strength from 0 to 1. InvalidArgument otherwise.
 struct DenoiseSettings {

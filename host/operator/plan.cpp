@@ -188,6 +188,7 @@ private:
                 const Run& run = plan_.runs.emplace_back(make_run(row, group, ring_entries, weighted));
                 row += run.count;
                 ring_entries += static_cast<std::uint64_t>(run.count) * run.stride();
+                ring_entries += ring_entries % 2;  // kernels load pairs
                 if (run.shape == RowShape::weighted) weighted += run.count;
             }
         }
@@ -243,6 +244,7 @@ private:
             rows_.ring_neighbours(walk, plan_.vertex_of_row[row], kind, out);
             for (int i = 0; i < stride; ++i) out[i] = plan_.row_of_vertex[out[i]];
         }
+        if (stride % 2 != 0 && run.count % 2 != 0) *out = 0;  // the place that nobody reads
     }
 
     /// Entries of consecutive weighted rows.

@@ -49,7 +49,7 @@ struct Plan {
     Index isolated_count = 0;  ///< the first rows of the fixed part: vertices without a face, left out of sizes and norms
     std::vector<Run> runs;
     std::vector<Block> blocks;
-    Array<Index> indices;                            ///< neighbours of ring rows, Run::stride() a row: edge ends, then diagonals
+    Array<Index> indices;                            ///< neighbours of ring rows, Run::stride() a row: edge ends, then diagonals; runs begin at even places
     std::vector<std::uint32_t> weighted_offsets{0};  ///< weighted_count + 1
     std::vector<Index> weighted_indices;
     std::vector<double> weighted_weights;

@@ -13,6 +13,7 @@
 
 #include "device.hpp"
 #include "error.hpp"
+#include "expansion.hpp"
 #include "io.hpp"
 #include "limit_operator.hpp"
 #include "mesh.hpp"
