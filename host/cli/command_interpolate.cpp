@@ -15,8 +15,6 @@ namespace lcl::cli {
 
 namespace {
 
-constexpr int most_residuals = 1 << 22;  // a longer history is cut: 32 MiB, whatever --max-iter says
-
 void note_solve_parameters(Job& job) {
     const Options& options = job.options;
     job.report.set_parameter("solver", std::string(solver_name(options.solver)));
@@ -63,7 +61,7 @@ lcl_status interpolate(lcl_operator A, lcl_mesh mesh, const std::vector<std::str
 lcl_status solve(Job& job, lcl_context context, lcl_operator A, lcl_mesh mesh, const std::vector<std::string>& channels) {
     SolveProgress state{&job.terminal.progress(), job.options.sweeps};
     const lcl_solve_options options = solve_options(job.options, state);
-    std::vector<double> residuals(static_cast<std::size_t>(std::min(std::max(options.max_iterations, options.exact_sweeps), most_residuals)) + 1);
+    std::vector<double> residuals = residual_space(std::max(options.max_iterations, options.exact_sweeps));
     lcl_solve_report report = LCL_SOLVE_REPORT_INIT;
     report.residuals = residuals.data();
     report.residual_capacity = residuals.size();

@@ -54,27 +54,42 @@ struct Textured {
 Textured make_texture(Job& job, lcl_context context, lcl_mesh mesh, const lcl_scheme_options& scheme) {
     SolveProgress state{&job.terminal.progress(), 0};
     const lcl_texture_options options = texture_options(job.options, state);
+    std::vector<double> residuals = residual_space(options.max_iterations);
     lcl_solve_report report = LCL_SOLVE_REPORT_INIT;
+    report.residuals = residuals.data();
+    report.residual_capacity = residuals.size();
     lcl_mesh handle = nullptr;
     const Phase phase(job, &Seconds::solve, "making the texture", context);
     const lcl_status status = lcl_texture(context, mesh, &scheme, &options, &handle, &report);
     Textured textured{Mesh(handle), std::nullopt};
-    if (status != LCL_OK && !is_result(status)) check_of_input(job, status);
-    note_solve(job, report, {});
-    if (status != LCL_OK) textured.failure = failure_of_result(status, report);
+    if (status != LCL_OK && !is_result(status)) throw failure_of(status);
+    note_solve(job, report, std::move(residuals));
+    if (status != LCL_OK) textured.failure = failure_of(status);
     if (textured.failure && !(job.options.keep_going && textured.mesh)) throw *textured.failure;
     return textured;
 }
 
-/// The first vertices of the refined mesh are those of IN.
+/// vertex_count values.
+std::vector<double> property_of(lcl_mesh mesh, const std::string& name) {
+    const std::vector<std::string> there = all_channels(mesh);
+    const auto place = std::find(there.begin(), there.end(), name) - there.begin();
+    std::vector<double> values(static_cast<std::size_t>(lcl_mesh_vertex_count(mesh)));
+    check(lcl_mesh_get_property(mesh, static_cast<std::int32_t>(place), values.data()));
+    return values;
+}
+
+/// Colours and noise of the textured mesh's first vertices, which are those of IN.
 void take_over(lcl_mesh mesh, lcl_mesh textured) {
-    const std::vector<std::string> there = all_channels(textured);
-    std::vector<double> values(static_cast<std::size_t>(lcl_mesh_vertex_count(textured)));
-    for (const char* name : {"red", "green", "blue", "noise"}) {
-        const auto place = std::find(there.begin(), there.end(), name) - there.begin();
-        check(lcl_mesh_get_property(textured, static_cast<std::int32_t>(place), values.data()));
-        check(lcl_mesh_set_property(mesh, name, values.data()));
+    const auto vertex_count = static_cast<std::size_t>(lcl_mesh_vertex_count(mesh));
+    std::vector<double> colours(3 * vertex_count);
+    std::size_t channel = 0;
+    for (const char* name : {"red", "green", "blue"}) {
+        const std::vector<double> values = property_of(textured, name);
+        for (std::size_t vertex = 0; vertex < vertex_count; ++vertex) colours[3 * vertex + channel] = values[vertex] / 255.0;
+        ++channel;
     }
+    check(lcl_mesh_set_colours(mesh, colours.data()));
+    check(lcl_mesh_set_property(mesh, "noise", property_of(textured, "noise").data()));
 }
 
 }  // namespace

@@ -10,6 +10,8 @@ namespace lcl::cli {
 
 namespace {
 
+constexpr int most_residuals = 1 << 22;
+
 double fraction_done(SolveProgress& state, std::int32_t iteration, double residual, double target) {
     if (state.sweeps > 0) return static_cast<double>(iteration) / state.sweeps;
     const bool is_new_solve = iteration < state.iteration;
@@ -37,6 +39,8 @@ Failure failure_of_result(lcl_status status, const lcl_solve_report& report) {
     if (report.vertex_count > 0) failure.vertices.assign(report.vertices, report.vertices + report.vertex_count);
     return failure;
 }
+
+std::vector<double> residual_space(int max_iterations) { return std::vector<double>(static_cast<std::size_t>(std::min(max_iterations, most_residuals)) + 1); }
 
 void note_solve(Job& job, const lcl_solve_report& report, std::vector<double> residuals) {
     residuals.resize(std::min(residuals.size(), report.residual_count));

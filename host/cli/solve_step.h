@@ -26,6 +26,9 @@ bool is_result(lcl_status status);
 /// Failure of such a status, with the sentence and the places of the solve's report.
 Failure failure_of_result(lcl_status status, const lcl_solve_report& report);
 
+/// Room for the residuals of a solve. A longer history is cut: 32 MiB, whatever --max-iter says.
+std::vector<double> residual_space(int max_iterations);
+
 /// Puts a solve and the residuals of its iterations into the report of the command.
 void note_solve(Job& job, const lcl_solve_report& report, std::vector<double> residuals);
 
