@@ -24,24 +24,41 @@ lcl_context shared_context() {
     return context.get();
 }
 
-/// Rows of A of a file in the folder, and the file's points.
+capi_test::Mesh read_mesh(const std::string& path) {
+    lcl_mesh handle = nullptr;
+    capi_test::succeed(lcl_mesh_read(path.c_str(), LCL_FORMAT_BY_ENDING, &handle));
+    return capi_test::Mesh(handle);
+}
+
+Values points_of(lcl_mesh mesh) {
+    Values points(3 * static_cast<std::size_t>(lcl_mesh_vertex_count(mesh)));
+    capi_test::succeed(lcl_mesh_get_points(mesh, points.data(), 0));
+    return points;
+}
+
+Values property_of(lcl_mesh mesh, const std::string& name) {
+    Values values(static_cast<std::size_t>(lcl_mesh_vertex_count(mesh)));
+    for (std::int32_t index = 0; index < lcl_mesh_property_count(mesh); ++index) {
+        if (lcl_mesh_property_name(mesh, index) != name) continue;
+        capi_test::succeed(lcl_mesh_get_property(mesh, index, values.data()));
+        return values;
+    }
+    FAIL("no property " << name);
+    return {};
+}
+
+/// A mesh file with its points and the rows of A.
 class Plain {
 public:
-    Plain(const std::string& path, const lcl_scheme_options& options) {
-        lcl_mesh handle = nullptr;
-        capi_test::succeed(lcl_mesh_read(path.c_str(), LCL_FORMAT_BY_ENDING, &handle));
-        mesh_.reset(handle);
+    Plain(const std::string& path, const lcl_scheme_options& options) : mesh(read_mesh(path)), points(points_of(mesh.get())) {
         lcl_operator A = nullptr;
-        capi_test::succeed(lcl_operator_create(shared_context(), handle, &options, &A));
+        capi_test::succeed(lcl_operator_create(shared_context(), mesh.get(), &options, &A));
         const capi_test::Operator owner(A);
-        const auto vertices = static_cast<std::size_t>(lcl_mesh_vertex_count(handle));
-        columns_.resize(vertices);
-        weights_.resize(vertices);
-        for (std::size_t vertex = 0; vertex < vertices; ++vertex) read_row(A, vertex);
-        points.resize(3 * vertices);
-        capi_test::succeed(lcl_mesh_get_points(handle, points.data(), 0));
+        columns_.resize(points.size() / 3);
+        weights_.resize(points.size() / 3);
+        for (std::size_t vertex = 0; vertex < columns_.size(); ++vertex) read_row(A, vertex);
         lcl_mesh_info info = LCL_MESH_INFO_INIT;
-        capi_test::succeed(lcl_mesh_get_info(handle, &info));
+        capi_test::succeed(lcl_mesh_get_info(mesh.get(), &info));
         diagonal = info.diagonal;
     }
 
@@ -58,9 +75,8 @@ public:
         return y;
     }
 
-    lcl_mesh mesh() const { return mesh_.get(); }
-
-    Values points;
+    const capi_test::Mesh mesh;
+    const Values points;
     double diagonal = 0.0;
 
 private:
@@ -72,7 +88,6 @@ private:
         capi_test::succeed(lcl_operator_get_row(A, static_cast<std::int32_t>(vertex), columns_[vertex].data(), weights_[vertex].data(), size, &size));
     }
 
-    capi_test::Mesh mesh_;
     std::vector<std::vector<std::int32_t>> columns_;
     std::vector<Values> weights_;
 };
@@ -195,13 +210,11 @@ std::string rough_block(int n) {
 }
 
 double volume_of(const std::string& path) {
-    lcl_mesh handle = nullptr;
-    capi_test::succeed(lcl_mesh_read(path.c_str(), LCL_FORMAT_BY_ENDING, &handle));
-    const capi_test::Mesh mesh(handle);
+    const capi_test::Mesh mesh = read_mesh(path);
+    lcl_mesh handle = mesh.get();
     std::vector<std::int32_t> degrees(static_cast<std::size_t>(lcl_mesh_face_count(handle))), corners(static_cast<std::size_t>(lcl_mesh_corner_count(handle)));
-    Values points(3 * static_cast<std::size_t>(lcl_mesh_vertex_count(handle)));
+    const Values points = points_of(handle);
     capi_test::succeed(lcl_mesh_get_faces(handle, degrees.data(), corners.data()));
-    capi_test::succeed(lcl_mesh_get_points(handle, points.data(), 0));
     double volume = 0.0;
     std::size_t first = 0;
     for (const std::int32_t degree : degrees) {
@@ -340,8 +353,8 @@ TEST_CASE("spectrum gives the energies of the terms", "[cli][spectrum]") {
     const Plain A((folder.path / "in.obj").string(), mesh.scheme);
     const std::size_t vertices = A.points.size() / 3;
     std::vector<double> faces_at(vertices, 0.0), D(vertices);
-    std::vector<std::int32_t> corners(static_cast<std::size_t>(lcl_mesh_corner_count(A.mesh())));
-    capi_test::succeed(lcl_mesh_get_faces(A.mesh(), nullptr, corners.data()));
+    std::vector<std::int32_t> corners(static_cast<std::size_t>(lcl_mesh_corner_count(A.mesh.get())));
+    capi_test::succeed(lcl_mesh_get_faces(A.mesh.get(), nullptr, corners.data()));
     for (const std::int32_t vertex : corners) faces_at[static_cast<std::size_t>(vertex)] += 1.0;
     for (std::size_t vertex = 0; vertex < vertices; ++vertex) {
         const double n = faces_at[vertex], c = 0.375 + std::cos(2.0 * std::acos(-1.0) / n) / 4.0;
@@ -602,9 +615,9 @@ TEST_CASE("meshes of a morph have the same faces", "[cli][morph][exit]") {
     const Folder folder;
     folder.file("from.obj", octahedron);
     folder.file("quads.obj", cube);
-    std::string turned = octahedron;
-    turned.replace(turned.find("f 1 6 5") == std::string::npos ? turned.find("f 1 5 6") : turned.find("f 1 6 5"), 7, "f 6 1 5");
-    folder.file("turned.obj", turned == octahedron ? octahedron : turned);
+    std::string turned = octahedron;  // the same face, begun elsewhere
+    turned.replace(turned.find("f 1 5 6"), 7, "f 6 1 5");
+    folder.file("turned.obj", turned);
     folder.file("more.obj", "v 9 9 9\n" + octahedron);
     folder.file("broken.obj", "v 0 0 0\nv 1 0\n");
     const std::size_t entries = folder.entries();
@@ -694,6 +707,109 @@ TEST_CASE("filters keep whole-number colours in their range", "[cli][channels]")
     const Outcome term = run(folder, "expand in.ply -o term.ply --term 1 --channels red --report -");
     CHECK(report_of(term).at("warnings").size() == 1);
     CHECK(contains(folder.read("term.ply"), "property double red"));
+}
+
+TEST_CASE("texture colours the refined mesh at its limit points", "[cli][texture]") {
+    const Folder folder;
+    const std::string name = GENERATE(as<std::string>(), "octahedron", "grid", "grid, Doo-Sabin");
+    const Case mesh = case_of(name);
+    folder.file("in.obj", mesh.text);
+    const std::string common = "texture in.obj --octaves 3 --colors '#102030,#f0e0d0' --frequency 5 " + mesh.options;
+    const Outcome outcome = run(folder, common + " -o out.ply --levels 3 --seed 7 --report -");
+    INFO(name << "\n" << outcome.err);
+    REQUIRE(outcome.exit_code == 0);
+    REQUIRE(run(folder, "refine in.obj -o fine.ply --limit --levels 3 " + mesh.options).exit_code == 0);
+    const capi_test::Mesh out = read_mesh((folder.path / "out.ply").string()), fine = read_mesh((folder.path / "fine.ply").string());
+    CHECK(lcl_mesh_compare_faces(out.get(), fine.get()) == LCL_OK);
+    CHECK(largest_difference(points_of(out.get()), points_of(fine.get())) <= 1e-12 * 10.0);  // diagonals up to 8.5
+    const Values noise = property_of(out.get(), "noise");
+    CHECK(*std::min_element(noise.begin(), noise.end()) == 0.0);
+    CHECK(*std::max_element(noise.begin(), noise.end()) == 1.0);
+    // a spline through two colours is the straight line between them
+    const double first[] = {16, 32, 48}, second[] = {240, 224, 208};
+    std::size_t channel = 0;
+    for (const char* colour : {"red", "green", "blue"}) {
+        const Values values = property_of(out.get(), colour);
+        double largest = 0.0;
+        for (std::size_t vertex = 0; vertex < noise.size(); ++vertex)
+            largest = std::max(largest, std::abs(values[vertex] - (first[channel] + noise[vertex] * (second[channel] - first[channel]))));
+        CHECK(largest <= 0.5 + 1e-9);  // whole numbers
+        ++channel;
+    }
+    CHECK(contains(folder.read("out.ply").substr(0, 500), "property uchar red"));
+    const json report = report_of(outcome);
+    CHECK(report.at("parameters").at("octaves") == 3);
+    CHECK(report.at("parameters").at("levels") == 3);
+    CHECK(report.at("parameters").at("frequency") == 5.0);
+    CHECK(report.at("parameters").at("seed") == 7);
+    CHECK(report.at("parameters").at("colors").size() == 6);
+    CHECK(report.at("parameters").at("tolerance") == 1e-6);
+    CHECK(report.at("converged") == true);
+    CHECK(report.at("max_error").get<double>() > 0.0);
+    CHECK(report.at("residuals").size() == report.at("iterations").get<std::size_t>() + 1);
+
+    REQUIRE(run(folder, common + " -o again.ply --levels 3 --seed 7").exit_code == 0);
+    CHECK(folder.read("again.ply") == folder.read("out.ply"));
+    REQUIRE(run(folder, common + " -o other.ply --levels 3 --seed 8").exit_code == 0);
+    CHECK(largest_difference(property_of(read_mesh((folder.path / "other.ply").string()).get(), "noise"), noise) > 0.1);
+    const json standard = report_of(run(folder, common + " -o least.ply --report -"));
+    CHECK(standard.at("parameters").at("levels") == 2);
+}
+
+TEST_CASE("texture --on-mesh gives the mesh itself the colours of its vertices", "[cli][texture]") {
+    const Folder folder;
+    folder.file("grid.obj", bumpy_grid(4) + "vt 0 0\n");
+    folder.file("in.ply", coloured_tetrahedron_ply());
+    REQUIRE(run(folder, "texture grid.obj -o fine.ply --octaves 2").exit_code == 0);
+    const Outcome outcome = run(folder, "texture grid.obj -o out.ply --octaves 2 --on-mesh --report -");
+    INFO(outcome.err);
+    REQUIRE(outcome.exit_code == 0);
+    CHECK(report_of(outcome).at("parameters").at("on_mesh") == true);
+    const capi_test::Mesh fine = read_mesh((folder.path / "fine.ply").string()), out = read_mesh((folder.path / "out.ply").string()),
+                          given = read_mesh((folder.path / "grid.obj").string());
+    CHECK(lcl_mesh_compare_faces(out.get(), given.get()) == LCL_OK);
+    CHECK(points_of(out.get()) == points_of(given.get()));
+    for (const char* name : {"red", "green", "blue", "noise"}) {
+        Values all = property_of(fine.get(), name);
+        all.resize(25);
+        CHECK(property_of(out.get(), name) == all);
+    }
+    CHECK(contains(folder.read("out.ply").substr(0, 500), "property uchar red"));
+    REQUIRE(run(folder, "texture grid.obj -o out.obj --octaves 2 --on-mesh").exit_code == 0);
+    const Values red = property_of(read_mesh((folder.path / "out.obj").string()).get(), "red"), in_bytes = property_of(out.get(), "red");
+    for (std::size_t vertex = 0; vertex < red.size(); ++vertex) CHECK(std::lround(255.0 * red[vertex]) == std::lround(in_bytes[vertex]));
+    // colours that were there are replaced, other data stays
+    REQUIRE(run(folder, "texture in.ply -o coloured.ply --octaves 2 --on-mesh").exit_code == 0);
+    const capi_test::Mesh coloured = read_mesh((folder.path / "coloured.ply").string());
+    CHECK(property_of(coloured.get(), "quality") == Values{5, -3, 7, 1});
+    CHECK(lcl_mesh_property_count(coloured.get()) == 5);
+}
+
+TEST_CASE("a texture on a singular operator is written only with --keep-going", "[cli][texture][exit]") {
+    const Folder folder;
+    folder.file("cube.obj", cube);
+    const Outcome refused = run(folder, "texture cube.obj -o out.ply --octaves 2 --report -");
+    INFO(refused.err);
+    CHECK(refused.exit_code == 4);
+    CHECK_FALSE(folder.has("out.ply"));
+    CHECK(contains(last_line(refused.err), "alpha"));
+    CHECK(report_of(refused).at("status") == "singular");
+    const Outcome going = run(folder, "texture cube.obj -o out.ply --octaves 2 --keep-going");
+    CHECK(going.exit_code == 4);
+    CHECK(property_of(read_mesh((folder.path / "out.ply").string()).get(), "noise").size() == 26);
+    const Outcome cured = run(folder, "texture cube.obj -o out.ply --octaves 2 --alpha auto --report -");
+    CHECK(cured.exit_code == 0);
+    CHECK(report_of(cured).at("parameters").at("alpha") == 0.5);
+}
+
+TEST_CASE("a texture that does not fit is exit code 5 with the number", "[cli][texture][exit]") {
+    const Folder folder;
+    folder.file("in.obj", octahedron);
+    const Outcome outcome = run(folder, "texture in.obj -o out.ply --levels 15");
+    INFO(outcome.err);
+    CHECK(outcome.exit_code == 5);
+    CHECK(contains(last_line(outcome.err), "level"));
+    CHECK_FALSE(folder.has("out.ply"));
 }
 
 TEST_CASE("filters work through pipes and in place", "[cli][io]") {

@@ -99,6 +99,7 @@ void run_texture(Job& job) {
     const Mesh mesh = read_sound_input(job);
     if (job.options.on_mesh) check_output_format(job, mesh.get());
     note_texture(job);
+    if (job.options.channels != "all" && job.options.channels != "none") choose_channels(job, mesh.get());  // names are checked; all are refined in any case
     SchemeChoice scheme = choose_scheme(job, mesh.get());
     Context context = device.finish();
     resolve_alpha(job, context, mesh.get(), scheme.options);
