@@ -57,7 +57,7 @@ void check_cover(const Plan& plan, Index block_rows) {
     CHECK(plan.all_rows().block_count == block);
 }
 
-/// Inside a block every shape stands in one run; ring runs are of one valence, and their indices lie one after the other.
+/// Inside a block every shape stands in one run; ring runs are of one valence, and their indices lie one after the other, each run's from an even place on.
 void check_runs(const Plan& plan) {
     std::size_t ring_entries = 0, weighted = 0;
     for (const Block& block : plan.blocks) {
@@ -67,6 +67,7 @@ void check_runs(const Plan& plan) {
             CHECK(shapes.insert({run.shape, run.edges}).second);
             CHECK(run.index_offset == (run.shape == RowShape::weighted ? weighted : ring_entries));
             ring_entries += static_cast<std::size_t>(run.count) * run.stride();
+            ring_entries += ring_entries % 2;
             if (run.shape == RowShape::weighted) weighted += run.count;
             else CHECK(run.weights.vertex + run.edges * (run.weights.edge + run.weights.diagonal) == Approx(1).margin(1e-14));
         }

@@ -62,7 +62,7 @@ void refuse_not_finite(const Plan& plan, const double* values, std::size_t strid
 std::vector<ChannelBlock> channel_blocks(int channels) {
     std::vector<ChannelBlock> blocks;
     for (int first = 0; first < channels;) {
-        const int count = std::min(channels - first, first == 0 ? 3 : 8);
+        const int count = std::min(channels - first, 8);
         blocks.push_back({first, count, row_width(count)});
         first += count;
     }

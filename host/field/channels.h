@@ -19,9 +19,11 @@ constexpr double float_range = 1e37;  // isolated vertices are cut off here
 /// Components of a row of so many channels: vectors of the kernels.
 constexpr int row_width(int count) { return count > 4 ? 8 : count > 2 ? 4 : count; }
 
-/// The first block holds the position, x, y, z (or fewer), alone: its norm is the residual E_k. Further channels follow in
-/// eights, which cost a CPU little more than fours: indices are read once for both.
+/// Eights, which cost a CPU little more than fours: indices are read once for both. The first block begins with the position, x, y, z (or fewer), whose norm,
+/// the residual E_k, is kept apart from that of channels beside it.
 std::vector<ChannelBlock> channel_blocks(int channels);
+/// Whether a block holds the position and more.
+inline bool is_mixed(const ChannelBlock& block) { return block.first == 0 && block.count > 3; }
 
 /// n x c values in a caller's memory: row v begins at value v * stride.
 template <class Values>
