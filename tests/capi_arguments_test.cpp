@@ -84,6 +84,8 @@ TEST_CASE("a missing argument of a mesh function is refused by its name", "[capi
         {"mesh", [&] { return lcl_mesh_set_property(nullptr, "x", points); }},
         {"name", [&] { return lcl_mesh_set_property(mesh, nullptr, points); }},
         {"values", [&] { return lcl_mesh_set_property(mesh, "x", nullptr); }},
+        {"mesh", [&] { return lcl_mesh_set_colours(nullptr, points); }},
+        {"colours", [&] { return lcl_mesh_set_colours(mesh, nullptr); }},
         {"mesh",
          [&] {
              lcl_suitability out = LCL_SUITABILITY_INIT;

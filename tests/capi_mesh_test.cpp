@@ -581,6 +581,32 @@ TEST_CASE("without a refinement a mesh keeps texture coordinates, groups and mat
     CHECK(io_test::file_bytes(folder.file("copy.obj")) == text);
 }
 
+TEST_CASE("colours are set in 8 bits, in the place of those that were there", "[capi][mesh][io]") {
+    const io_test::TemporaryFolder folder;
+    const Mesh mesh = read_text("v 0 0 0 0.1 0.2 0.3 0.5\nv 1 0 0 0.4 0.5 0.6 0.5\nv 0 1 0 0.7 0.8 0.9 0.5\nf 1 2 3\n", LCL_FORMAT_OBJ);
+    const std::vector<double> colours{1, 0, 0.5, 0, 1, 0.2, 0.002, 0.999, 1};
+    succeed(lcl_mesh_set_colours(mesh.get(), colours.data()));
+    REQUIRE(lcl_mesh_property_count(mesh.get()) == 4);
+    const double expected[4][3] = {
+        {255, 0, 1}, {0, 255, 255}, {128, 51, 255}, {0.5, 0.5, 0.5}};  // 127.5 is rounded up; 0.002 * 255 = 0.51; 0.999 * 255 = 254.7
+    for (int32_t index = 0; index < 4; ++index) {
+        CHECK(lcl_mesh_property_is_colour(mesh.get(), index) == 1);
+        std::vector<double> found(3);
+        succeed(lcl_mesh_get_property(mesh.get(), index, found.data()));
+        CHECK(found == std::vector<double>(expected[index], expected[index] + 3));
+    }
+    succeed(lcl_mesh_write(mesh.get(), folder.file("x.ply").c_str(), LCL_FORMAT_BY_ENDING));
+    CHECK_THAT(io_test::file_bytes(folder.file("x.ply")), Catch::Matchers::Contains("property uchar red"));
+
+    const Mesh plain = make_mesh(shapes::octahedron());
+    std::vector<double> white(18, 1.0);
+    succeed(lcl_mesh_set_colours(plain.get(), white.data()));
+    succeed(lcl_mesh_write(plain.get(), folder.file("x.obj").c_str(), LCL_FORMAT_BY_ENDING));
+    CHECK_THAT(io_test::file_bytes(folder.file("x.obj")), Catch::Matchers::Contains(" 1 1 1\n"));
+    white[4] = 1.5;
+    refuse(lcl_mesh_set_colours(plain.get(), white.data()), LCL_ERROR_INVALID_ARGUMENT, "green of vertex 1 is 1.5");
+}
+
 TEST_CASE("colours and properties are refined as the points are, texture coordinates are dropped with a note", "[capi][mesh][refine]") {
     const lcl_scheme scheme_name = GENERATE(LCL_SCHEME_CATMULL_CLARK, LCL_SCHEME_DOO_SABIN);
     const shapes::Shape shape = shapes::grid_with_creases();

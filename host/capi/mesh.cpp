@@ -194,6 +194,20 @@ bool widen(VertexProperty& property) {
     return !fits;
 }
 
+/// Red, green and blue in 8 bits from rows of three numbers from 0 to 1.
+std::vector<VertexProperty> colour_columns(const double* colours, Index vertex_count) {
+    std::vector<VertexProperty> columns;
+    for (const char* name : {"red", "green", "blue"}) columns.push_back({name, VertexProperty::Kind::colour, "uchar", {}});
+    for (std::size_t i = 0; i < 3 * static_cast<std::size_t>(vertex_count); ++i) {
+        if (!(colours[i] >= 0 && colours[i] <= 1))
+            throw InvalidArgument("colours: " + columns[i % 3].name + " of vertex " + std::to_string(i / 3) + " is " + std::to_string(colours[i]) +
+                                      ", it goes from 0 to 1",
+                                  {{static_cast<Index>(i / 3)}, {}});
+        columns[i % 3].values.push_back(std::round(255 * colours[i]));
+    }
+    return columns;
+}
+
 /// The values and how often each of them is met; `value` gives those of 0 to count - 1, below zero: not counted.
 template <class Value>
 std::map<Index, Index> count_values(Index count, const Value& value) {
@@ -493,6 +507,19 @@ lcl_status lcl_mesh_set_property(lcl_mesh mesh, const char* name, const double* 
         found->values.assign(values, values + mesh->file.mesh.vertex_count);
         if (widen(*found))
             mesh->notes[LCL_NOTE_WARNING].push_back("the property '" + wanted + "' holds values now that its integer type cannot: it is kept as double");
+        return LCL_OK;
+    });
+}
+
+lcl_status lcl_mesh_set_colours(lcl_mesh mesh, const double* colours) {
+    return guarded([&] {
+        std::vector<VertexProperty>& properties = required(mesh, "mesh")->file.properties;
+        const std::vector<VertexProperty> columns = colour_columns(required(colours, "colours"), mesh->file.mesh.vertex_count);
+        for (const VertexProperty& column : columns) {
+            const auto found = std::find_if(properties.begin(), properties.end(), [&](const VertexProperty& p) { return p.name == column.name; });
+            if (found == properties.end()) properties.push_back(column);
+            else *found = column;
+        }
         return LCL_OK;
     });
 }

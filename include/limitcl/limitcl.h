@@ -266,6 +266,9 @@ LCL_API lcl_status lcl_mesh_get_property(lcl_mesh mesh, int32_t index, double* v
 /** Sets the values of a property that is there (`name` exists) or adds one of type double. An integer property becomes double, with a note, where it could not
  * hold them. */
 LCL_API lcl_status lcl_mesh_set_property(lcl_mesh mesh, const char* name, const double* values);
+/** Colours of the vertices, which writers put beside the points in 8 bits; those that were there are replaced, an alpha stays. colours: vertex_count x (red,
+ * green, blue) from 0 to 1. */
+LCL_API lcl_status lcl_mesh_set_colours(lcl_mesh mesh, const double* colours);
 
 typedef LCL_ENUM(lcl_note){
     LCL_NOTE_WARNING = 0,           /**< sentences on what could not be kept or was doubtful, from reading, refining and writing */
