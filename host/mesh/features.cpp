@@ -47,7 +47,8 @@ void mark_given_creases(const Topology& topology, const std::vector<std::array<I
 void mark_creases_by_angle(const PolygonMesh& mesh, const Topology& topology, double degrees, Features& features) {
     Array<Vector> normals(topology.face_count);
     parallel_for(topology.face_count, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t f = begin; f < end; ++f) normals[f] = newell_normal(mesh.face_vertices.data(), mesh.face_offsets[f], mesh.face_offsets[f + 1], mesh.positions);
+        for (std::size_t f = begin; f < end; ++f)
+            normals[f] = newell_normal(mesh.face_vertices.data(), mesh.face_offsets[f], mesh.face_offsets[f + 1], mesh.positions);
     });
     parallel_for(topology.edge_count, [&](std::size_t begin, std::size_t end) {
         for (std::size_t e = begin; e < end; ++e) {

@@ -55,8 +55,8 @@ struct Plan {
     std::vector<std::uint32_t> weighted_offsets{0};  ///< weighted_count + 1
     std::vector<Index> weighted_indices;
     std::vector<double> weighted_weights;
-    /// row_count: D_ii that makes D A symmetric on the smooth part; elsewhere the same formula with n the number of faces, which weights sums over the mesh. 0 for
-    /// isolated vertices and blend ratios of 1.
+    /// row_count: D_ii that makes D A symmetric on the smooth part; elsewhere the same formula with n the number of faces, which weights sums over the mesh. 0
+    /// for isolated vertices and blend ratios of 1.
     std::vector<double> scaling;
     bool has_scaling = true;       ///< false: rows that came without one; all of `scaling` is 0
     bool rows_sum_to_one = true;   ///< A maps a constant to itself

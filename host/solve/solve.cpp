@@ -283,7 +283,9 @@ private:
         constexpr const char* not_in_float = "the values are kept in float, which cannot hold them to this tolerance: use fields of double precision";
         const std::string after = " after " + std::to_string(monitor_->iteration()) + " iterations";
         const bool is_auto = options_.solver == Solver::automatic;
-        const char* other = !is_auto ? ": use solver auto" : system_.origin == Origin::scheme ? ": allow more iterations, or use a larger alpha" : ": allow more iterations";
+        const char* other = !is_auto                           ? ": use solver auto"
+                            : system_.origin == Origin::scheme ? ": allow more iterations, or use a larger alpha"
+                                                               : ": allow more iterations";
         const std::string dominance_hint = system_.origin == Origin::scheme ? " (lambda of 1/3 or more)" : "";
         switch (monitor_->outcome()) {
             case Outcome::diverged:
@@ -293,8 +295,7 @@ private:
                 if (monitor_->history().back() < wide_floor) return "the tolerance lies below what the arithmetic reaches" + after + ": use a larger one";
                 if (options_.precision == Precision::mixed && fields_are_float_) return not_in_float;
                 return "the residual no longer falls" + after + (options_.precision == Precision::single ? ": single precision ends here, use mixed" : other);
-            case Outcome::indefinite:
-                return "a negative eigenvalue was met, " + std::string(operator_name(system_)) + " is indefinite: " + cure(system_);
+            case Outcome::indefinite: return "a negative eigenvalue was met, " + std::string(operator_name(system_)) + " is indefinite: " + cure(system_);
             case Outcome::converged: return not_in_float;
             case Outcome::exhausted: break;
         }

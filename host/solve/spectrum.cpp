@@ -91,13 +91,13 @@ void judge(const LimitSystem& system, double lowest, Spectrum& spectrum) {
     spectrum.singular = !spectrum.indefinite && lowest <= rounding;
     const std::string name = operator_name(system);
     if (spectrum.indefinite)
-        spectrum.message = name + " is indefinite, it has an eigenvalue of about " + value + " or less" + where +
-                           ", and no iteration is sure to converge: " + cure(system);
+        spectrum.message =
+            name + " is indefinite, it has an eigenvalue of about " + value + " or less" + where + ", and no iteration is sure to converge: " + cure(system);
     else if (spectrum.singular)
         spectrum.message = name + " is singular to working precision, its smallest eigenvalue is about " + value + where + ": " + cure(system);
     else
-        spectrum.warning = name + " is nearly singular, its smallest eigenvalue is about " + value + where + ", so noise in the vertices is exaggerated: " +
-                           cure(system);
+        spectrum.warning =
+            name + " is nearly singular, its smallest eigenvalue is about " + value + where + ", so noise in the vertices is exaggerated: " + cure(system);
 }
 
 std::string text(double value) {
@@ -107,15 +107,13 @@ std::string text(double value) {
 }
 
 /// How far a number lies outside the interval [0, 1].
-double distance_from_unit_interval(std::complex<double> value) {
-    return std::hypot(std::max({0.0, -value.real(), value.real() - 1}), value.imag());
-}
+double distance_from_unit_interval(std::complex<double> value) { return std::hypot(std::max({0.0, -value.real(), value.real() - 1}), value.imag()); }
 
 [[noreturn]] void refuse(std::complex<double> value) {
     constexpr const char* needed = ": iterations and filters take eigenvalues from 0 to 1, ";
     if (std::fabs(value.imag()) > std::max(-value.real(), value.real() - 1))
-        throw Unsupported("the rows have an eigenvalue of about " + text(value.real()) + " + " + text(std::fabs(value.imag())) + " i, which is not real" + needed +
-                          "as matrices that are symmetric under a scaling have");
+        throw Unsupported("the rows have an eigenvalue of about " + text(value.real()) + " + " + text(std::fabs(value.imag())) + " i, which is not real" +
+                          needed + "as matrices that are symmetric under a scaling have");
     if (value.real() > 1)
         throw Unsupported("the rows have an eigenvalue of about " + text(value.real()) + ", above 1" + needed + "so divide all weights by it");
     throw Unsupported("the rows have an eigenvalue of about " + text(value.real()) + ", below 0" + needed + "as t E + (1 - t) A has for a t of " +
