@@ -398,6 +398,21 @@ TEST_CASE("matrices that are far from normal, or were rounded to floats, are not
     is_taken(rows_of(1.0000001 * ring(41, 0.2), ones));  // what is above 1 could be rounding
 }
 
+TEST_CASE("auto falls back to PIA where Chebyshev fails on rows that are far from normal", "[rows]") {
+    const int n = 60;
+    Eigen::MatrixXd a = 0.5 * Eigen::MatrixXd::Identity(n, n);
+    a.diagonal(-1).setConstant(0.5);
+    a(0, 0) = 1;
+    const Operator A = make_rows_operator(rows_of(a));
+    const Eigen::MatrixXd m = rough_matrix(n, 3, 1);
+    const Solved solved(A.get(), m, solve_options(LCL_SOLVER_AUTO, 1e-6));
+    check_solution(a, m, solved, 1e-6);
+    CHECK(solved.report.solver == LCL_SOLVER_PIA);
+    const Solved chebyshev(A.get(), m, solve_options(LCL_SOLVER_CHEBYSHEV, 1e-6));
+    CHECK(chebyshev.status == LCL_ERROR_NOT_CONVERGED);
+    CHECK_THAT(chebyshev.report.message, Catch::EndsWith(": use solver auto"));
+}
+
 TEST_CASE("Ritz values of a few rows are the eigenvalues, with a scaling they never lie outside the spectrum", "[rows][spectrum]") {
     Eigen::VectorXd d;
     const Eigen::MatrixXd a = self_adjoint(20, 0.1, 1, d);

@@ -61,7 +61,7 @@ struct Plan {
     bool has_scaling = true;       ///< false: rows that came without one; all of `scaling` is 0
     bool rows_sum_to_one = true;   ///< A maps a constant to itself
     std::vector<double> diagonal;  ///< row_count: A_ii
-    double lambda_min_bound = 0;   ///< proven lower bound of the smooth part's spectrum; NaN where none is known (valence below 3)
+    double lambda_min_bound = 0;   ///< proven lower bound of the smooth part's spectrum (of rows without a scaling: of all eigenvalues); NaN if none is known
     bool has_valence_2 = false;    ///< a smooth vertex with fewer than three faces
 
     bool has_darts() const { return darts.row_count > 0; }

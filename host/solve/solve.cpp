@@ -96,7 +96,7 @@ public:
         report_.channel_error = final_norms.others;
         const bool converged = report_.max_error <= options_.tolerance * diagonal && report_.channel_error <= options_.tolerance;
         const Plan& plan = system_.plan();
-        const bool nothing_proven = plan.has_darts() || std::isnan(plan.lambda_min_bound);
+        const bool nothing_proven = plan.has_scaling && (plan.has_darts() || std::isnan(plan.lambda_min_bound));  // other rows may be far from normal
         const bool failed =
             monitor_->outcome() == Outcome::indefinite || (monitor_->outcome() == Outcome::diverged && nothing_proven && options_.solver == Solver::automatic);
         report_.status = spectrum.indefinite || (failed && !converged) ? SolveStatus::indefinite

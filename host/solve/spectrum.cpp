@@ -59,7 +59,7 @@ double lanczos_estimate(DeviceOperator& A, int steps) {
 double smooth_estimate(const LimitSystem& system, int steps) {
     DeviceOperator& A = *system.A;
     const Plan& plan = A.plan();
-    if (system.origin == Origin::rows) return lanczos_estimate(A, steps);
+    if (system.origin != Origin::scheme) return lanczos_estimate(A, steps);
     const Part sample = weakest_blocks(plan, std::max(sample_least, plan.smooth.row_count / sample_share));
     if (2 * sample.row_count >= plan.smooth.row_count) return lanczos_estimate(A, steps);
     DeviceOperator part(A.shared_context(), std::make_shared<const Plan>(excerpt(plan, sample.first_block, sample.block_count)), A.launch_shape());
