@@ -110,14 +110,11 @@ std::string text(double value) {
 double distance_from_unit_interval(std::complex<double> value) { return std::hypot(std::max({0.0, -value.real(), value.real() - 1}), value.imag()); }
 
 [[noreturn]] void refuse(std::complex<double> value) {
-    constexpr const char* needed = ": iterations and filters take eigenvalues from 0 to 1, ";
+    const std::string found = "the rows have an eigenvalue of about " + text(value.real()), needed = ": iterations and filters take eigenvalues from 0 to 1";
     if (std::fabs(value.imag()) > std::max(-value.real(), value.real() - 1))
-        throw Unsupported("the rows have an eigenvalue of about " + text(value.real()) + " + " + text(std::fabs(value.imag())) + " i, which is not real" +
-                          needed + "as matrices that are symmetric under a scaling have");
-    if (value.real() > 1)
-        throw Unsupported("the rows have an eigenvalue of about " + text(value.real()) + ", above 1" + needed + "so divide all weights by it");
-    throw Unsupported("the rows have an eigenvalue of about " + text(value.real()) + ", below 0" + needed + "as t E + (1 - t) A has for a t of " +
-                      text(-value.real() / (1 - value.real())) + " or more");
+        throw Unsupported(found + " + " + text(std::fabs(value.imag())) + " i, which is not real" + needed);
+    if (value.real() > 1) throw Unsupported(found + ", above 1" + needed + ", so divide all weights by it");
+    throw Unsupported(found + ", below 0" + needed + ", as t E + (1 - t) A has for a t of " + text(-value.real() / (1 - value.real())) + " or more");
 }
 
 /// With a scaling every diagonal element is a quotient <x, A x>_D / <x, x>_D, and lies within the spectrum.
