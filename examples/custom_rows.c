@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* C99: an operator of one's own instead of a mesh. A smooths the samples of an open curve: (1 - t) x_i + t (a x_(i - 1) + b x_(i + 1)), a + b = 1, with weights
-   inversely as the distances to the two neighbours, so that uneven samples of a straight line stay where they are. The ends stay. D_ii = the sum of both inverse
-   distances makes D A symmetric. Solved for P with A P = M: the curve that A smooths to the given one. */
+   inversely as the distances to the two neighbours, so that uneven samples of a straight line stay where they are. The ends stay. D_ii = the sum of both
+   inverse distances makes D A symmetric. Solved for P with A P = M: the curve that A smooths to the given one. */
 #include <limitcl/limitcl.h>
 
 #include <math.h>
