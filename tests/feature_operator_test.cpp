@@ -174,7 +174,7 @@ TEST_CASE("D of a feature operator counts weights, and makes the block inside th
 
 TEST_CASE("a noisy box gets straight edges and flat sides under a feature operator, and keeps them sharp", "[feature-operator][denoise]") {
     shapes::Shape shape = shapes::box_with_crease_angle();
-    shape.features = {};  // the operator is to find the edges by itself
+    shape.features = {};                       // the operator is to find the edges by itself
     for (int level = 0; level < 2; ++level) {  // 3 x 3 quads a side, split in four twice, without moving anything
         std::vector<shapes::Point> points = shapes::points_of(shape.mesh);
         std::map<std::vector<int>, int> made;
@@ -226,12 +226,14 @@ TEST_CASE("a noisy box gets straight edges and flat sides under a feature operat
 }
 
 TEST_CASE("a feature operator is solved with like others", "[feature-operator]") {
-    for (shapes::Shape shape : {shapes::rough(shapes::icosphere(2), 0.05, 1), shapes::rough(shapes::grid_with_marked_corner(), 0.1, 2), shapes::grid_with_creases()}) {
+    for (shapes::Shape shape :
+         {shapes::rough(shapes::icosphere(2), 0.05, 1), shapes::rough(shapes::grid_with_marked_corner(), 0.1, 2), shapes::grid_with_creases()}) {
         INFO(shape.name);
         const Operator A = make_features(shape);
         const Eigen::MatrixXd a = rows_test::matrix_of(rows_of(A.get())), m = oracle::positions(shape.mesh);
         const bool has_darts = shape.name == shapes::grid_with_creases().name;
-        std::vector<lcl_solver> solvers{LCL_SOLVER_AUTO, LCL_SOLVER_PIA, LCL_SOLVER_WPIA, LCL_SOLVER_JACOBI, LCL_SOLVER_GS, LCL_SOLVER_GS_COLOURED, LCL_SOLVER_CHEBYSHEV};
+        std::vector<lcl_solver> solvers{LCL_SOLVER_AUTO, LCL_SOLVER_PIA,         LCL_SOLVER_WPIA,     LCL_SOLVER_JACOBI,
+                                        LCL_SOLVER_GS,   LCL_SOLVER_GS_COLOURED, LCL_SOLVER_CHEBYSHEV};
         if (!has_darts) solvers.push_back(LCL_SOLVER_CG);
         for (const lcl_solver solver : solvers) {
             const Solved solved(A.get(), m, solve_options(solver, 1e-9));

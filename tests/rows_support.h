@@ -92,7 +92,8 @@ inline Eigen::MatrixXd rough_matrix(Eigen::Index rows, Eigen::Index columns, std
 /// Diagonal of the box of the rows of m.
 inline double box_diagonal(const Eigen::MatrixXd& m) { return (m.colwise().maxCoeff() - m.colwise().minCoeff()).norm(); }
 
-inline lcl_solve_options solve_options(lcl_solver solver, double tolerance = 1e-6, lcl_precision precision = LCL_PRECISION_MIXED, int32_t max_iterations = 1000) {
+inline lcl_solve_options solve_options(lcl_solver solver, double tolerance = 1e-6, lcl_precision precision = LCL_PRECISION_MIXED,
+                                       int32_t max_iterations = 1000) {
     lcl_solve_options options = LCL_SOLVE_OPTIONS_INIT;
     options.solver = solver;
     options.tolerance = tolerance;

@@ -51,8 +51,8 @@ struct Transform {
 };
 
 /// Positions: centre and inverse diagonal of the bounding box; further channels: middle and inverse range. 1 where a range is 0, or, where rows do not sum to
-/// 1, the inverse of the largest value. Isolated vertices are left out. BadInput for a value that is not finite, or values so large, so close together or so far
-/// from 0 where that is the centre that they cannot be scaled. values: row v of `stride` doubles belongs to vertex v.
+/// 1, the inverse of the largest value. Isolated vertices are left out. BadInput for a value that is not finite, or values so large, so close together or so
+/// far from 0 where that is the centre that they cannot be scaled. values: row v of `stride` doubles belongs to vertex v.
 Transform fit_transform(const Plan& plan, const double* values, std::size_t stride, int channels);
 
 /// The same in two steps, for values of any kind.

@@ -55,13 +55,13 @@ struct Plan {
     std::vector<std::uint32_t> weighted_offsets{0};  ///< weighted_count + 1
     std::vector<Index> weighted_indices;
     std::vector<double> weighted_weights;
-    /// row_count: D_ii that makes D A symmetric on the smooth part; elsewhere the same formula with n the number of faces, which weights sums over the mesh. 0 for
-    /// isolated vertices and blend ratios of 1.
+    /// row_count: D_ii that makes D A symmetric on the smooth part; elsewhere the same formula with n the number of faces, which weights sums over the mesh. 0
+    /// for isolated vertices and blend ratios of 1.
     std::vector<double> scaling;
     bool has_scaling = true;       ///< false: rows that came without one; all of `scaling` is 0
     bool rows_sum_to_one = true;   ///< A maps a constant to itself
     std::vector<double> diagonal;  ///< row_count: A_ii
-    double lambda_min_bound = 0;   ///< proven lower bound of the smooth part's spectrum; NaN where none is known (valence below 3)
+    double lambda_min_bound = 0;   ///< proven lower bound of the smooth part's spectrum (of rows without a scaling: of all eigenvalues); NaN if none is known
     bool has_valence_2 = false;    ///< a smooth vertex with fewer than three faces
 
     bool has_darts() const { return darts.row_count > 0; }

@@ -13,8 +13,7 @@ constexpr std::size_t group_count = 6;
 
 void cut_into_blocks(Plan& plan, Part& part, Index block_rows) {
     part.first_block = static_cast<Index>(plan.blocks.size());
-    for (Index row = part.first_row; row < part.end_row(); row += block_rows)
-        plan.blocks.push_back({0, 0, row, std::min(block_rows, part.end_row() - row)});
+    for (Index row = part.first_row; row < part.end_row(); row += block_rows) plan.blocks.push_back({0, 0, row, std::min(block_rows, part.end_row() - row)});
     part.block_count = static_cast<Index>(plan.blocks.size()) - part.first_block;
 }
 

@@ -20,9 +20,7 @@ struct RowMatrix {
 
     std::int64_t entry_count() const { return offsets[count]; }
     /// One entry, the vertex itself with weight 1.
-    bool is_identity(Index row) const {
-        return offsets[row + 1] - offsets[row] == 1 && columns[offsets[row]] == row && weights[offsets[row]] == 1;
-    }
+    bool is_identity(Index row) const { return offsets[row + 1] - offsets[row] == 1 && columns[offsets[row]] == row && weights[offsets[row]] == 1; }
 };
 
 /// The transpose, as the rows that have each column.

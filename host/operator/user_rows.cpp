@@ -15,7 +15,7 @@ namespace {
 
 constexpr double epsilon = std::numeric_limits<double>::epsilon();
 constexpr double largest_weight = std::numeric_limits<float>::max(), least_diagonal = std::numeric_limits<float>::min();  // kernels work in floats, too
-constexpr double least_scaling = 1e-30;  // of the largest one
+constexpr double least_scaling = 1e-30;                                                                                   // of the largest one
 
 /// A number as short as it can be told.
 std::string text(double value) {
@@ -30,8 +30,8 @@ void check_offsets(const RowMatrix& rows) {
     if (rows.offsets[0] != 0) throw BadInput("offsets begin with " + std::to_string(rows.offsets[0]) + ": they begin with 0", {{0}, {}});
     for (Index row = 0; row < rows.count; ++row)
         if (rows.offsets[row + 1] < rows.offsets[row])
-            refuse(row, "begins at entry " + std::to_string(rows.offsets[row]) + " and ends at " + std::to_string(rows.offsets[row + 1]) +
-                            ": offsets do not fall");
+            refuse(row,
+                   "begins at entry " + std::to_string(rows.offsets[row]) + " and ends at " + std::to_string(rows.offsets[row + 1]) + ": offsets do not fall");
 }
 
 /// last_reader: for each column the last row that was seen to have it.

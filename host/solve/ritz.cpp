@@ -78,12 +78,11 @@ private:
     template <class Body>
     void for_each_chunk(const Body& body) const {
         const std::size_t rows = plan_.row_count;
-        parallel_for(
-            (rows + chunk - 1) / chunk,
-            [&](std::size_t begin, std::size_t end) {
-                for (std::size_t k = begin; k < end; ++k) body(k, k * chunk, std::min(rows, (k + 1) * chunk));
-            },
-            1);
+        parallel_for((rows + chunk - 1) / chunk,
+                     [&](std::size_t begin, std::size_t end) {
+                         for (std::size_t k = begin; k < end; ++k) body(k, k * chunk, std::min(rows, (k + 1) * chunk));
+                     },
+                     1);
     }
 
     /// <a_i, b>_w.

@@ -23,8 +23,8 @@ struct RitzValue {
 ///
 /// Without one (Arnoldi): they lie in the field of values of A, which may be much larger than the spectrum. But a Ritz value with vector y and residual
 /// r = |A y - theta y| is an eigenvalue of a matrix at a distance of r from A, so an eigenvalue of A lies within about kappa r, kappa = |u| |s| / |u^H s| the
-/// condition of theta by its left and right eigenvectors in the Hessenberg matrix (exact to first order; kappa of A itself is not at hand). The weights may have
-/// been rounded to floats, and eigenvalues that are defective, which matrices with a real spectrum may have, split into complex ones by kappa times that:
+/// condition of theta by its left and right eigenvectors in the Hessenberg matrix (exact to first order; kappa of A itself is not at hand). The weights may
+/// have been rounded to floats, and eigenvalues that are defective, which matrices with a real spectrum may have, split into complex ones by kappa times that:
 /// error = kappa (10 r + 1e-6 |H|).
 std::vector<RitzValue> ritz_values(const Plan& plan);
 

@@ -96,7 +96,7 @@ public:
         report_.channel_error = final_norms.others;
         const bool converged = report_.max_error <= options_.tolerance * diagonal && report_.channel_error <= options_.tolerance;
         const Plan& plan = system_.plan();
-        const bool nothing_proven = plan.has_darts() || std::isnan(plan.lambda_min_bound);
+        const bool nothing_proven = plan.has_scaling && (plan.has_darts() || std::isnan(plan.lambda_min_bound));  // other rows may be far from normal
         const bool failed =
             monitor_->outcome() == Outcome::indefinite || (monitor_->outcome() == Outcome::diverged && nothing_proven && options_.solver == Solver::automatic);
         report_.status = spectrum.indefinite ? SolveStatus::indefinite
@@ -284,7 +284,9 @@ private:
         constexpr const char* not_in_float = "the values are kept in float, which cannot hold them to this tolerance: use fields of double precision";
         const std::string after = " after " + std::to_string(monitor_->iteration()) + " iterations";
         const bool is_auto = options_.solver == Solver::automatic;
-        const char* other = !is_auto ? ": use solver auto" : system_.origin == Origin::scheme ? ": allow more iterations, or use a larger alpha" : ": allow more iterations";
+        const char* other = !is_auto                           ? ": use solver auto"
+                            : system_.origin == Origin::scheme ? ": allow more iterations, or use a larger alpha"
+                                                               : ": allow more iterations";
         const std::string dominance_hint = system_.origin == Origin::scheme ? " (lambda of 1/3 or more)" : "";
         switch (monitor_->outcome()) {
             case Outcome::diverged:
@@ -294,8 +296,7 @@ private:
                 if (monitor_->history().back() < wide_floor) return "the tolerance lies below what the arithmetic reaches" + after + ": use a larger one";
                 if (options_.precision == Precision::mixed && fields_are_float_) return not_in_float;
                 return "the residual no longer falls" + after + (options_.precision == Precision::single ? ": single precision ends here, use mixed" : other);
-            case Outcome::indefinite:
-                return "a negative eigenvalue was met, " + std::string(operator_name(system_)) + " is indefinite: " + cure(system_);
+            case Outcome::indefinite: return "a negative eigenvalue was met, " + std::string(operator_name(system_)) + " is indefinite: " + cure(system_);
             case Outcome::converged: return not_in_float;
             case Outcome::exhausted: break;
         }

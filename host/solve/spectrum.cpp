@@ -59,7 +59,7 @@ double lanczos_estimate(DeviceOperator& A, int steps) {
 double smooth_estimate(const LimitSystem& system, int steps) {
     DeviceOperator& A = *system.A;
     const Plan& plan = A.plan();
-    if (system.origin == Origin::rows) return lanczos_estimate(A, steps);
+    if (system.origin != Origin::scheme) return lanczos_estimate(A, steps);
     const Part sample = weakest_blocks(plan, std::max(sample_least, plan.smooth.row_count / sample_share));
     if (2 * sample.row_count >= plan.smooth.row_count) return lanczos_estimate(A, steps);
     DeviceOperator part(A.shared_context(), std::make_shared<const Plan>(excerpt(plan, sample.first_block, sample.block_count)), A.launch_shape());
@@ -91,13 +91,13 @@ void judge(const LimitSystem& system, double lowest, Spectrum& spectrum) {
     spectrum.singular = !spectrum.indefinite && lowest <= rounding;
     const std::string name = operator_name(system);
     if (spectrum.indefinite)
-        spectrum.message = name + " is indefinite, it has an eigenvalue of about " + value + " or less" + where +
-                           ", and no iteration is sure to converge: " + cure(system);
+        spectrum.message =
+            name + " is indefinite, it has an eigenvalue of about " + value + " or less" + where + ", and no iteration is sure to converge: " + cure(system);
     else if (spectrum.singular)
         spectrum.message = name + " is singular to working precision, its smallest eigenvalue is about " + value + where + ": " + cure(system);
     else
-        spectrum.warning = name + " is nearly singular, its smallest eigenvalue is about " + value + where + ", so noise in the vertices is exaggerated: " +
-                           cure(system);
+        spectrum.warning =
+            name + " is nearly singular, its smallest eigenvalue is about " + value + where + ", so noise in the vertices is exaggerated: " + cure(system);
 }
 
 std::string text(double value) {
@@ -107,19 +107,14 @@ std::string text(double value) {
 }
 
 /// How far a number lies outside the interval [0, 1].
-double distance_from_unit_interval(std::complex<double> value) {
-    return std::hypot(std::max({0.0, -value.real(), value.real() - 1}), value.imag());
-}
+double distance_from_unit_interval(std::complex<double> value) { return std::hypot(std::max({0.0, -value.real(), value.real() - 1}), value.imag()); }
 
 [[noreturn]] void refuse(std::complex<double> value) {
-    constexpr const char* needed = ": iterations and filters take eigenvalues from 0 to 1, ";
+    const std::string found = "the rows have an eigenvalue of about " + text(value.real()), needed = ": iterations and filters take eigenvalues from 0 to 1";
     if (std::fabs(value.imag()) > std::max(-value.real(), value.real() - 1))
-        throw Unsupported("the rows have an eigenvalue of about " + text(value.real()) + " + " + text(std::fabs(value.imag())) + " i, which is not real" + needed +
-                          "as matrices that are symmetric under a scaling have");
-    if (value.real() > 1)
-        throw Unsupported("the rows have an eigenvalue of about " + text(value.real()) + ", above 1" + needed + "so divide all weights by it");
-    throw Unsupported("the rows have an eigenvalue of about " + text(value.real()) + ", below 0" + needed + "as t E + (1 - t) A has for a t of " +
-                      text(-value.real() / (1 - value.real())) + " or more");
+        throw Unsupported(found + " + " + text(std::fabs(value.imag())) + " i, which is not real" + needed);
+    if (value.real() > 1) throw Unsupported(found + ", above 1" + needed + ", so divide all weights by it");
+    throw Unsupported(found + ", below 0" + needed + ", as t E + (1 - t) A has for a t of " + text(-value.real() / (1 - value.real())) + " or more");
 }
 
 /// With a scaling every diagonal element is a quotient <x, A x>_D / <x, x>_D, and lies within the spectrum.
