@@ -7,7 +7,7 @@
 namespace lcl {
 
 struct FeatureOperatorOptions {
-    double angle_degrees = 30;         ///< at which a weight has fallen to 1/e
+    double angle_degrees = 20;         ///< at which a weight has fallen to 1/e
     double diagonal_factor = 2.5;      ///< above 2
     int smoothing = 3;                 ///< of the points from which tangent planes are taken
     std::vector<std::uint8_t> subset;  ///< empty, or 1 for each vertex that may move

@@ -47,7 +47,7 @@ struct Rows {
 
 /// Weights of a feature-preserving operator: exp(-(angle between the tangent planes at an edge's ends / angle_degrees)^2).
 struct FeatureWeights {
-    double angle_degrees = 30;
+    double angle_degrees = 20;
     double diagonal_factor = 2.5;      ///< above 2: eigenvalues lie in [1 - 2 / factor, 1]
     int smoothing = 3;                 ///< of the points from which the tangent planes are taken; 0: none
     std::vector<std::int32_t> subset;  ///< empty: all; else the vertices that may move, the others keep their points

@@ -523,7 +523,7 @@ LCL_API lcl_status lcl_operator_create_rows(lcl_context context, const lcl_rows*
 
 typedef struct lcl_feature_options {
     uint32_t struct_size;
-    double angle_degrees;   /**< 0: 30. Angle between the tangent planes at an edge's ends at which its weight has fallen to 1/e, at most 180 */
+    double angle_degrees;   /**< 0: 20. Angle between the tangent planes at an edge's ends at which its weight has fallen to 1/e, at most 180 */
     double diagonal_factor; /**< 0: 2.5. D_ii = factor x sum of the weights at i; above 2, so that eigenvalues lie in [1 - 2 / factor, 1] */
     int32_t smoothing;      /**< 0: 3; below 0: none; at most 1000. Applications of E - (E - A)^3, A of the default scheme, to the points from which the tangent
                                  planes are taken */
@@ -598,8 +598,8 @@ typedef struct lcl_denoise_options {
 LCL_API lcl_status lcl_denoise(lcl_operator A, const double* M, size_t stride, int32_t channels, const lcl_denoise_options* options, double* out,
                                size_t out_stride);
 LCL_API lcl_status lcl_denoise_field(lcl_operator A, lcl_field M, const lcl_denoise_options* options, lcl_field out);
-/** m and k in plain words: strength 0 (k = 0: nothing but A, or nothing at all where plain) to 1 (m = 1, k = 10), 0.5 the default m = 2, k = 3; the more, the
- * smoother. */
+/** m and k in plain words: strength 0 (k = 0: nothing but A, or nothing at all where plain) to 1 (m = 1, k = 100), 0.5 the default m = 2, k = 3; the more, the
+ * smoother. For noise of 0.1 mean edge lengths about 0.6, of 0.2 to 0.3 0.8 to 0.9, of more 0.9 to 1. */
 LCL_API lcl_status lcl_denoise_settings(double strength, int32_t* m, int32_t* k);
 /** Moves the points of every closed component along their normals (area-weighted), all by one distance, until the component encloses the volume that it had
  * with `points` (vertex_count rows of three, `stride` values apart, 0: 3). Corners and `fixed` vertices stay. A component that keeps no volume, or cannot reach
