@@ -52,6 +52,7 @@ private:
             run.index_offset = static_cast<std::uint32_t>(out_.indices.size());
             const std::size_t count = static_cast<std::size_t>(run.count) * run.stride();
             for (std::size_t i = 0; i < count; ++i) out_.indices.push_back(column(plan_.indices[offset + i]));
+            if (count % 2 != 0) out_.indices.push_back(0);  // runs begin at even places
         }
         out_.runs.push_back(run);
     }

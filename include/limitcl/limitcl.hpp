@@ -13,11 +13,13 @@
 
 #include "device.hpp"
 #include "error.hpp"
+#include "expansion.hpp"
 #include "io.hpp"
 #include "limit_operator.hpp"
 #include "mesh.hpp"
 #include "refine.hpp"
 #include "scheme.hpp"
 #include "solve.hpp"
+#include "texture.hpp"
 
 #endif
