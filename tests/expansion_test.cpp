@@ -6,6 +6,7 @@
 #include "host/field/host_rows.h"
 #include "host/filter/expansion.h"
 #include "tests/expansion_support.h"
+#include "tests/rows_support.h"
 #include "tests/solver_support.h"
 
 using namespace expansion_test;
@@ -387,6 +388,60 @@ TEST_CASE("isolated vertices may be anywhere, and disturb nothing", "[expansion]
                 succeed(lcl_spectrum(subject->A.get(), M.data(), 0, 3, precision, 4, energies.data()));
                 succeed(lcl_spectrum(subject->A.get(), plain.data(), 0, 3, precision, 4, plain_energies.data()));
                 CHECK(same(energies, plain_energies));
+            }
+        }
+}
+
+TEST_CASE("matrices of a caller's own are filtered like limit operators, whether their rows sum to 1 or not", "[expansion][rows]") {
+    constexpr int m = 9, n = 6, count = m * n;
+    Matrix links = Matrix::Zero(count, count);
+    for (int i = 0; i < count; ++i) {
+        if (i % n + 1 < n) links(i, i + 1) = links(i + 1, i) = 1;
+        if (i + n < count) links(i, i + n) = links(i + n, i) = 1;
+    }
+    const Eigen::VectorXd d = links.rowwise().sum();
+    const Matrix smoothing = 0.6 * Matrix::Identity(count, count) + 0.4 * d.cwiseInverse().asDiagonal() * links;
+    const Matrix points = solver_test::rough_values(count, 3, 4).array() + 2;
+    const std::vector<double> M = values_of(points);
+    for (const Matrix& a : {smoothing, Matrix(0.5 * smoothing + 0.25 * Matrix::Identity(count, count))})
+        for (const bool with_scaling : {true, false}) {
+            const Operator A = rows_test::make_rows_operator(with_scaling ? rows_test::rows_of(a, d) : rows_test::rows_of(a));
+            INFO("row sum " << a.row(0).sum() << (with_scaling ? ", with D" : ", without D"));
+            const auto check_filter = [&](auto options, const Matrix& expected, double gain = 1) {
+                for (const Way& way : all_ways()) {
+                    INFO(way.name());
+                    options.precision = way.precision;
+                    std::vector<double> out(M.size());
+                    if (way.on_fields) {
+                        const FieldHandle x = make_field(A.get(), M, way.precision), y = make_field(A.get(), 3, way.precision);
+                        succeed(call(A.get(), x.get(), options, y.get()));
+                        out = download(y.get(), count);
+                    } else {
+                        succeed(call(A.get(), M.data(), 0, 3, options, out.data(), 0));
+                    }
+                    CHECK(difference_to(out, expected) <=
+                          64 * gain * (way.is_single() ? std::ldexp(1, -22) : std::ldexp(1, has_double() ? -51 : -44)));  // values up to 3
+                }
+            };
+            check_filter(denoise_options(2, 3), denoised(a, points, 2, 3, false));
+            check_filter(denoise_options(17, 2, true), denoised(a, points, 17, 2, true));
+            check_filter(expand_options(1, 4), sum_of_terms(a, points, LCL_SERIES_REPRESENTATION, 1, 4));
+            check_filter(expand_options(0, 6, LCL_SERIES_INTERPOLATION), sum_of_terms(a, points, LCL_SERIES_INTERPOLATION, 0, 6));
+            check_filter(sharpen_options(1, 3, 2), sharpened(a, points, 1, 3, 2), 16);
+            std::vector<double> energies(6);
+            if (!with_scaling) {
+                const FieldHandle x = make_field(A.get(), M, LCL_PRECISION_SINGLE);
+                refuse(lcl_spectrum(A.get(), M.data(), 0, 3, LCL_PRECISION_MIXED, 2, energies.data()), LCL_ERROR_INVALID_ARGUMENT,
+                       "energies need the scaling D");
+                refuse(lcl_spectrum_field(A.get(), x.get(), 2, energies.data()), LCL_ERROR_INVALID_ARGUMENT, "give lcl_rows.scaling");
+                continue;
+            }
+            succeed(lcl_spectrum(A.get(), M.data(), 0, 3, LCL_PRECISION_MIXED, 2, energies.data()));
+            for (int i = 0; i < 2; ++i) {
+                const Matrix term = sum_of_terms(a, points, LCL_SERIES_REPRESENTATION, i, i);
+                const Eigen::RowVectorXd mean = d.transpose() * term / d.sum();
+                for (int c = 0; c < 3; ++c)
+                    CHECK(energies[3 * i + c] == Approx(d.dot((term.col(c).array() - mean[c]).square().matrix()) / d.sum()).epsilon(1e-10));
             }
         }
 }

@@ -4,6 +4,7 @@
 
 #include "host/filter/morph.h"
 #include "tests/expansion_support.h"
+#include "tests/rows_support.h"
 #include "tests/solver_support.h"
 
 using namespace expansion_test;
@@ -325,6 +326,36 @@ TEST_CASE("pairs of floats morph as finely as double where there is none", "[mor
             CHECK(difference_to({points, points + from.size()}, expected[frame]) <= allowed);
             return true;
         });
+    }
+}
+
+TEST_CASE("matrices of a caller's own morph, evenly where they have a scaling", "[morph][rows]") {
+    constexpr int count = 40;
+    Matrix a = Matrix::Zero(count, count);  // a ring; rows sum to 0.9
+    for (int i = 0; i < count; ++i) a(i, i) = 0.5, a(i, (i + 1) % count) = a(i, (i + count - 1) % count) = 0.2;
+    const Matrix from = solver_test::rough_values(count, 3, 1).array() + 5, to = solver_test::rough_values(count, 3, 2);
+    const std::vector<double> from_values = values_of(from), to_values = values_of(to);
+    for (const bool with_scaling : {true, false}) {
+        const Operator A = rows_test::make_rows_operator(with_scaling ? rows_test::rows_of(a, Eigen::VectorXd::Constant(count, 2)) : rows_test::rows_of(a));
+        for (const lcl_morph_path path : {LCL_MORPH_RECURSION, LCL_MORPH_EVEN}) {
+            const Path given{path, 4, {2}, {}};
+            const lcl_morph_options options = given.options();
+            Frames frames;
+            frames.size = from_values.size();
+            const lcl_status status = lcl_morph(A.get(), from_values.data(), to_values.data(), 0, 3, &options, Frames::take, &frames);
+            if (path == LCL_MORPH_EVEN && !with_scaling) {
+                refuse(status, LCL_ERROR_INVALID_ARGUMENT, "even morphs need the scaling D");
+                CHECK(frames.numbers.empty());
+                continue;
+            }
+            succeed(status);
+            Matrix expected = from;
+            for (int step = 0; step < 4; ++step) {
+                const Matrix y = filtered(a, expected - to, 2);
+                expected = to + (path == LCL_MORPH_EVEN ? std::min(1.0, (1 - (step + 1) / 4.0) * (from - to).norm() / y.norm()) : 0.5) * y;
+                CHECK(difference_to(frames.points[step + 1], expected) <= 1e-13);
+            }
+        }
     }
 }
 
