@@ -13,6 +13,7 @@
 #include <catch2/catch.hpp>
 
 #include "limitcl/limitcl.h"
+#include "tests/at_end.h"
 #include "tests/shapes/shapes.h"
 
 namespace capi_test {
@@ -69,7 +70,11 @@ inline Context open_context(const char* device = nullptr, bool profiling = false
 
 /// One context for all tests that need no other: programs are built once.
 inline lcl_context default_context() {
-    static const Context context = open_context();
+    static Context context;
+    if (!context) {
+        context = open_context();
+        at_end().push_back([] { context.reset(); });
+    }
     return context.get();
 }
 

@@ -91,46 +91,48 @@ inline lcl_scheme_options classic_doo_sabin() {
 
 /// Closed and smooth: A is self-adjoint under D as a whole.
 inline const std::vector<Subject>& closed_subjects() {
-    static const std::vector<Subject> all = [] {
-        const shapes::Shape polygons = shapes::rough(shapes::polygons_mixed(60, 3), 0.05, 1);
-        std::vector<double> ratios;
-        for (int v = 0; v < polygons.mesh.vertex_count; ++v) ratios.push_back(v % 4 * 0.25);
-        std::vector<Subject> list;
-        list.emplace_back("Catmull-Clark", polygons, scheme(LCL_SCHEME_CATMULL_CLARK));
-        list.emplace_back("alpha 0.5", shapes::rough(shapes::polygons_mixed(50, 8), 0.05, 2), scheme(LCL_SCHEME_CATMULL_CLARK, 0.5));
-        list.emplace_back("lambda 0.3", shapes::rough(shapes::icosphere_quads(1), 0.05, 3), scheme(LCL_SCHEME_CATMULL_CLARK, 0, 0.3));
-        list.emplace_back("one ratio a vertex", polygons, scheme(LCL_SCHEME_CATMULL_CLARK), ratios);
-        list.emplace_back("Loop", shapes::rough(shapes::random_triangle_mesh(70, 7), 0.05, 4), scheme(LCL_SCHEME_LOOP));
-        list.emplace_back("Doo-Sabin", shapes::rough(shapes::polygons_mixed(50, 5), 0.05, 5), scheme(LCL_SCHEME_DOO_SABIN));
-        list.emplace_back("classic Doo-Sabin", polygons, classic_doo_sabin());
-        list.emplace_back("singular cube", shapes::rough(shapes::cube(), 0.1, 6), scheme(LCL_SCHEME_CATMULL_CLARK));
-        list.emplace_back("two components and an isolated vertex", shapes::with_isolated_vertex(shapes::rough(shapes::two_components(), 0.1, 7), 4),
-                          scheme(LCL_SCHEME_LOOP));
-        return list;
-    }();
+    static std::vector<Subject> all;
+    if (!all.empty()) return all;
+    at_end().push_back([] { all.clear(); });
+    const shapes::Shape polygons = shapes::rough(shapes::polygons_mixed(60, 3), 0.05, 1);
+    std::vector<double> ratios;
+    for (int v = 0; v < polygons.mesh.vertex_count; ++v) ratios.push_back(v % 4 * 0.25);
+    std::vector<Subject> list;
+    list.emplace_back("Catmull-Clark", polygons, scheme(LCL_SCHEME_CATMULL_CLARK));
+    list.emplace_back("alpha 0.5", shapes::rough(shapes::polygons_mixed(50, 8), 0.05, 2), scheme(LCL_SCHEME_CATMULL_CLARK, 0.5));
+    list.emplace_back("lambda 0.3", shapes::rough(shapes::icosphere_quads(1), 0.05, 3), scheme(LCL_SCHEME_CATMULL_CLARK, 0, 0.3));
+    list.emplace_back("one ratio a vertex", polygons, scheme(LCL_SCHEME_CATMULL_CLARK), ratios);
+    list.emplace_back("Loop", shapes::rough(shapes::random_triangle_mesh(70, 7), 0.05, 4), scheme(LCL_SCHEME_LOOP));
+    list.emplace_back("Doo-Sabin", shapes::rough(shapes::polygons_mixed(50, 5), 0.05, 5), scheme(LCL_SCHEME_DOO_SABIN));
+    list.emplace_back("classic Doo-Sabin", polygons, classic_doo_sabin());
+    list.emplace_back("singular cube", shapes::rough(shapes::cube(), 0.1, 6), scheme(LCL_SCHEME_CATMULL_CLARK));
+    list.emplace_back("two components and an isolated vertex", shapes::with_isolated_vertex(shapes::rough(shapes::two_components(), 0.1, 7), 4),
+                      scheme(LCL_SCHEME_LOOP));
+    all = std::move(list);
     return all;
 }
 
 /// Boundaries, creases, corners, darts, isolated vertices, a subset.
 inline const std::vector<Subject>& open_subjects() {
-    static const std::vector<Subject> all = [] {
-        const shapes::Shape grid = shapes::rough(shapes::grid_with_creases(), 0.1, 2);
-        std::vector<double> ratios;
-        for (int v = 0; v < grid.mesh.vertex_count; ++v) ratios.push_back(v % 3 * 0.3);
-        std::vector<int32_t> subset;
-        const shapes::Shape torus = shapes::rough(shapes::torus_quads(9, 7), 0.05, 2);
-        for (int32_t v = 0; v < torus.mesh.vertex_count; ++v)
-            if (v % 3 != 1) subset.push_back(v);
-        std::vector<Subject> list;
-        list.emplace_back("creases, darts, an isolated vertex", shapes::with_isolated_vertex(grid, 20), scheme(LCL_SCHEME_CATMULL_CLARK, 0.5));
-        list.emplace_back("creases, darts, one ratio a vertex", grid, scheme(LCL_SCHEME_CATMULL_CLARK), ratios);
-        list.emplace_back("a hole, alpha and lambda", shapes::rough(shapes::grid_with_hole(), 0.1, 5), scheme(LCL_SCHEME_CATMULL_CLARK, 0.25, 0.3));
-        list.emplace_back("triangles with creases", shapes::rough(shapes::grid_triangles_with_creases(), 0.1, 3), scheme(LCL_SCHEME_LOOP));
-        list.emplace_back("Doo-Sabin, marked corners", shapes::rough(shapes::grid_with_marked_corner(), 0.1, 6), scheme(LCL_SCHEME_DOO_SABIN));
-        list.emplace_back("classic Doo-Sabin, creases", grid, classic_doo_sabin());
-        list.emplace_back("a subset", torus, scheme(LCL_SCHEME_CATMULL_CLARK), std::vector<double>{}, subset);
-        return list;
-    }();
+    static std::vector<Subject> all;
+    if (!all.empty()) return all;
+    at_end().push_back([] { all.clear(); });
+    const shapes::Shape grid = shapes::rough(shapes::grid_with_creases(), 0.1, 2);
+    std::vector<double> ratios;
+    for (int v = 0; v < grid.mesh.vertex_count; ++v) ratios.push_back(v % 3 * 0.3);
+    std::vector<int32_t> subset;
+    const shapes::Shape torus = shapes::rough(shapes::torus_quads(9, 7), 0.05, 2);
+    for (int32_t v = 0; v < torus.mesh.vertex_count; ++v)
+        if (v % 3 != 1) subset.push_back(v);
+    std::vector<Subject> list;
+    list.emplace_back("creases, darts, an isolated vertex", shapes::with_isolated_vertex(grid, 20), scheme(LCL_SCHEME_CATMULL_CLARK, 0.5));
+    list.emplace_back("creases, darts, one ratio a vertex", grid, scheme(LCL_SCHEME_CATMULL_CLARK), ratios);
+    list.emplace_back("a hole, alpha and lambda", shapes::rough(shapes::grid_with_hole(), 0.1, 5), scheme(LCL_SCHEME_CATMULL_CLARK, 0.25, 0.3));
+    list.emplace_back("triangles with creases", shapes::rough(shapes::grid_triangles_with_creases(), 0.1, 3), scheme(LCL_SCHEME_LOOP));
+    list.emplace_back("Doo-Sabin, marked corners", shapes::rough(shapes::grid_with_marked_corner(), 0.1, 6), scheme(LCL_SCHEME_DOO_SABIN));
+    list.emplace_back("classic Doo-Sabin, creases", grid, classic_doo_sabin());
+    list.emplace_back("a subset", torus, scheme(LCL_SCHEME_CATMULL_CLARK), std::vector<double>{}, subset);
+    all = std::move(list);
     return all;
 }
 

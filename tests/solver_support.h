@@ -11,6 +11,7 @@
 
 #include "host/mesh/features.h"
 #include "host/solve/solve.h"
+#include "tests/at_end.h"
 #include "tests/oracle/dense.h"
 #include "tests/oracle/limit.h"
 #include "tests/shapes/shapes.h"
@@ -103,20 +104,27 @@ inline oracle::SparseMatrix matrix_of(const lcl::Plan& plan) {
     return a;
 }
 
-/// The default device, opened once for all tests. Never closed: when static objects go, some OpenCL implementations are gone already.
-inline const std::shared_ptr<lcl::Context>& device_context() {
-    static const auto& context = *new std::shared_ptr<lcl::Context>(lcl::Context::create(lcl::choose_device()));
+/// `context`, opened for all tests when it is first asked for.
+inline const std::shared_ptr<lcl::Context>& opened_once(std::shared_ptr<lcl::Context>& context, const lcl::DeviceInfo& device) {
+    if (!context) {
+        context = lcl::Context::create(device);
+        at_end().push_back([&] { context.reset(); });
+    }
     return context;
+}
+
+inline const std::shared_ptr<lcl::Context>& device_context() {
+    static std::shared_ptr<lcl::Context> context;
+    return context ? context : opened_once(context, lcl::choose_device());
 }
 
 /// The same device taken for one without double precision, so that pairs of floats run anywhere.
 inline const std::shared_ptr<lcl::Context>& context_without_double() {
-    static const auto& context = *new std::shared_ptr<lcl::Context>([] {
-        lcl::DeviceInfo device = lcl::choose_device();
-        device.has_double = false;
-        return lcl::Context::create(device);
-    }());
-    return context;
+    static std::shared_ptr<lcl::Context> context;
+    if (context) return context;
+    lcl::DeviceInfo device = lcl::choose_device();
+    device.has_double = false;
+    return opened_once(context, device);
 }
 
 struct Solved {
