@@ -295,3 +295,51 @@ TEST_CASE("a mesh goes through a file and through memory", "[cpp][io]") {
     CHECK(status_of([] { format_of_path("a.xyz"); }) == LCL_ERROR_INVALID_ARGUMENT);
     std::remove(path.c_str());
 }
+
+TEST_CASE("textures come with their report, and failures of their solves are errors unless one insists", "[cpp][texture]") {
+    const Context context;
+    TextureOptions options;
+    options.octaves = 2;
+    options.levels = 2;
+    options.colours = {1, 0, 0, 0, 0, 1};
+    int calls = 0;
+    options.progress = [&](int, double, double) { return ++calls > 0; };
+    const Texture texture = make_texture(context, octahedron(), options);
+    CHECK(texture.report.status == LCL_OK);
+    CHECK(texture.report.converged);
+    CHECK(calls > 0);
+    REQUIRE(texture.mesh.vertex_count() == 4 * 16 + 2);
+    const std::vector<double> noise = texture.mesh.property("noise"), red = texture.mesh.property("red"), blue = texture.mesh.property("blue");
+    for (std::size_t v = 0; v < noise.size(); ++v) {
+        CHECK(red[v] == std::round(255 * (1 - noise[v])));  // two colours: a straight line
+        CHECK(blue[v] == std::round(255 * noise[v]));
+    }
+    options.seed = 1;
+    CHECK(make_texture(context, octahedron(), options).mesh.property("noise") != noise);
+    options.seed = 0;
+    options.frequency = 3;
+    CHECK(make_texture(context, octahedron(), options).mesh.property("noise") != noise);
+
+    CHECK(status_of([&] { return make_texture(context, cube(), options); }) == LCL_ERROR_SINGULAR);
+    options.keep_going = true;
+    const Texture insisted = make_texture(context, cube(), options);
+    CHECK(insisted.report.status == LCL_ERROR_SINGULAR);
+    CHECK(insisted.mesh.vertex_count() == 98);
+    SchemeOptions scheme;
+    scheme.alpha_auto = true;
+    CHECK(make_texture(context, cube(), options, scheme).report.status == LCL_OK);
+    options.max_iterations = 1;
+    options.tolerance = 1e-12;
+    CHECK(make_texture(context, cube(), options, scheme).report.status == LCL_ERROR_NOT_CONVERGED);
+
+    options.progress = [](int, double, double) { return false; };
+    CHECK(status_of([&] { return make_texture(context, octahedron(), options); }) == LCL_ERROR_CANCELLED);
+    options.progress = [](int, double, double) -> bool { throw std::runtime_error("from the caller"); };
+    CHECK_THROWS_WITH(make_texture(context, octahedron(), options), "from the caller");
+    options.progress = nullptr;
+    options.colours.pop_back();
+    CHECK(status_of([&] { return make_texture(context, octahedron(), options); }) == LCL_ERROR_INVALID_ARGUMENT);
+    options.colours.clear();
+    scheme.lambda_per_vertex = {0.5};
+    CHECK(status_of([&] { return make_texture(context, cube(), options, scheme); }) == LCL_ERROR_INVALID_ARGUMENT);
+}

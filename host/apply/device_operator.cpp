@@ -189,7 +189,8 @@ DeviceOperator::Phases DeviceOperator::phases(std::size_t sweeps, const Field& f
     if (!is_smooth || part.row_count == 0) return one_by_one;
     std::size_t widest = 0;
     for (std::size_t b = 0; b < field.blocks().size(); ++b) widest = std::max(widest, field.row_bytes(b));
-    const std::size_t row_bytes = fields * widest + sizeof(Index) * plan_->indices.size() / part.row_count;
+    const std::size_t stencil_bytes = sizeof(Index) * plan_->indices.size() + (sizeof(Index) + sizeof(float)) * plan_->weighted_indices.size();
+    const std::size_t row_bytes = fields * widest + stencil_bytes / part.row_count;
     if (row_bytes * part.row_count <= shape_.cache_bytes) return one_by_one;  // all of it stays in cache
     for (Index depth = one_by_one.sweeps; depth > 1; --depth) {
         const Index width = (shape_.phase_blocks + depth - 1) / depth, lag = plan_->reach + 2 * width;

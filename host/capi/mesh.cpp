@@ -8,6 +8,19 @@
 
 using namespace lcl;
 
+namespace {
+
+/// Edge ends of all creases off the boundary.
+std::vector<std::array<Index, 2>> crease_edges(const Topology& topology, const Features& features) {
+    std::vector<std::array<Index, 2>> edges;
+    for (Index e = 0; e < topology.edge_count; ++e)
+        if (features.edge_is_sharp[e] && !topology.is_boundary_edge(e))
+            edges.push_back({topology.origin(topology.edge_half_edge[e]), topology.destination(topology.edge_half_edge[e])});
+    return edges;
+}
+
+}  // namespace
+
 const Topology& lcl_mesh_s::sound_topology() {
     const std::lock_guard<std::mutex> lock(mutex_);
     if (!topology_) topology_ = build_topology(file.mesh);
@@ -62,6 +75,8 @@ BoundaryRule lcl_mesh_s::boundary_rule() const {
     return file.tags.interpolate_boundary == 2 ? BoundaryRule::edge_only : BoundaryRule::edge_and_corner;
 }
 
+FeatureOptions lcl_mesh_s::named_features() { return {boundary_rule(), crease_edges(topology(), features()), feature_options.corners, -1}; }
+
 void lcl_mesh_s::keep_features_of_positions() {
     if (feature_options.crease_angle_degrees > 0) features();
 }
@@ -96,15 +111,6 @@ lcl_mesh adopt(MeshFile file) {
 FileFormat inner_format(lcl_format format) {
     if (format < LCL_FORMAT_BY_ENDING || format > LCL_FORMAT_OM) throw InvalidArgument("format is " + std::to_string(format) + ", it goes from 0 to 5");
     return static_cast<FileFormat>(format);
-}
-
-/// Edge ends of all creases off the boundary.
-std::vector<std::array<Index, 2>> crease_edges(const Topology& topology, const Features& features) {
-    std::vector<std::array<Index, 2>> edges;
-    for (Index e = 0; e < topology.edge_count; ++e)
-        if (features.edge_is_sharp[e] && !topology.is_boundary_edge(e))
-            edges.push_back({topology.origin(topology.edge_half_edge[e]), topology.destination(topology.edge_half_edge[e])});
-    return edges;
 }
 
 /// The tags that make a reader find the same features: creases however they were found, marked corners, the boundary rule where it is not the default.

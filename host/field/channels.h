@@ -44,15 +44,15 @@ auto with_type(const RowsOf<Values>& rows, const Body& body) {
     return rows.is_float ? body(static_cast<Float*>(rows.values)) : body(static_cast<Double*>(rows.values));
 }
 
-/// stored = (value - centre) * scale, one of each a channel. Rows of A sum to 1, so A commutes with it, and models that are far away or huge lose nothing in
-/// float.
+/// stored = (value - centre) * scale, one of each a channel. Where rows of A sum to 1, A commutes with it, and models that are far away or huge lose nothing in
+/// float; where they do not, the centre is 0.
 struct Transform {
     std::vector<double> centre, scale;
 };
 
-/// Positions: centre and inverse diagonal of the bounding box; further channels: middle and inverse range. 1 where a range is 0. Isolated vertices are left
-/// out. BadInput for a value that is not finite, or values so large or so close together that their size or its inverse is none. values: row v of `stride`
-/// doubles belongs to vertex v.
+/// Positions: centre and inverse diagonal of the bounding box; further channels: middle and inverse range. 1 where a range is 0, or, where rows do not sum to
+/// 1, the inverse of the largest value. Isolated vertices are left out. BadInput for a value that is not finite, or values so large, so close together or so far
+/// from 0 where that is the centre that they cannot be scaled. values: row v of `stride` doubles belongs to vertex v.
 Transform fit_transform(const Plan& plan, const double* values, std::size_t stride, int channels);
 
 /// The same in two steps, for values of any kind.

@@ -100,9 +100,7 @@ inline double step(const LimitOperator& A, double a, double b, const Field& M, c
 }
 
 inline LimitOperator::LimitOperator(const Context& context, const Mesh& mesh, const SchemeOptions& options) : context_(context) {
-    if (!options.lambda_per_vertex.empty() && options.lambda_per_vertex.size() != static_cast<std::size_t>(mesh.vertex_count()))
-        throw Error(LCL_ERROR_INVALID_ARGUMENT, "lambda_per_vertex has " + std::to_string(options.lambda_per_vertex.size()) + " values, the mesh has " +
-                                                    std::to_string(mesh.vertex_count()) + " vertices");
+    detail::require_ratios(options, mesh);
     const lcl_scheme_options c = options.to_c();
     lcl_operator A = nullptr;
     check(lcl_operator_create(context.get(), mesh.get(), &c, &A));

@@ -660,7 +660,7 @@ typedef struct lcl_texture_options {
     uint32_t struct_size;
     int32_t octaves;   /**< 0: 4; at most 20 */
     int32_t levels;    /**< K refinements of the result, octaves - 1 at least; 0: so many */
-    double frequency;  /**< F, noise cells across the diagonal of the bounding box in the first octave; 0: 8 */
+    double frequency;  /**< F, noise cells across the diagonal of the bounding box in the first octave; 0: 8. At most 2^32 in the last one */
     uint32_t seed;
     const double* colours; /**< colour_count x (red, green, blue) from 0 to 1; NULL: five of marble */
     size_t colour_count;
@@ -675,11 +675,17 @@ typedef struct lcl_texture_options {
     { (uint32_t)sizeof(lcl_texture_options), 0, 0, 0.0, 0, NULL, 0, LCL_PRECISION_MIXED, 0.0, 0, 0, NULL, NULL }
 
 /** Procedural texture by interpolated octaves (mesh expansion paper, section 5): octave i is improved Perlin noise f(2^i p)/2^i at the vertices p of the mesh
- * refined i times, p = F (x - centre)/diagonal + an offset from the seed; each octave is interpolated by a limit surface of its own, all are added on the mesh
- * refined `levels` times, at its limit points, and normalised to t in [0, 1] (1/2 where all is one). `textured` is that mesh at its limit points, with the
- * property "noise" (t) and colours red, green, blue from a cubic B-spline through the colours, colour j at t = j/(colour_count - 1), natural ends, clamped to
- * [0, 1]. Deterministic by seed. alpha and lambda rule the first refinement alone. `scheme`: as for lcl_operator_create. report: of the worst solve.
- * LCL_ERROR_MEMORY, with the number, where the levels do not fit. */
+ * refined i times, p = F (x - centre)/diagonal + an offset from the seed, which is far from whole numbers in every octave; each octave is interpolated by a
+ * limit surface of its own, all are added on the mesh refined `levels` times, at its limit points, and normalised to t in [0, 1] (1/2 where all is one).
+ * `textured` is that mesh at its limit points, with the property "noise" (t) and colours red, green, blue (whole numbers from 0 to 255, as PLY files have them)
+ * from a cubic B-spline through the colours, colour j at t = j/(colour_count - 1), natural ends, clamped to [0, 1]. They replace properties of these names;
+ * others are refined and taken to the limit too. Texture coordinates are dropped with a note, as by lcl_mesh_refine, whose order of vertices it has
+ * (Catmull-Clark and Loop: those of `mesh` come first, with the colours for `mesh` itself). The same seed gives the same texture: to the bit on one device, to
+ * the tolerance on others. alpha and lambda rule the first refinement alone. `scheme`: as for lcl_operator_create, where alpha_auto looks at `mesh` itself,
+ * vertices outside the subset keep their noise as control values, and owned is refused. report (may be NULL): of the worst solve, the one with the largest
+ * error for its tolerance; lengths are values of noise. LCL_ERROR_SINGULAR, _INDEFINITE, _NOT_CONVERGED: the sentence names the octave (vertices are numbered
+ * as in its mesh), and nothing is given out unless keep_going is set. LCL_ERROR_MEMORY, with the number and before anything large is made, where the levels do
+ * not fit. Costs `octaves` solves of one channel, `levels` refinements on the host and one pass. */
 LCL_API lcl_status lcl_texture(lcl_context context, lcl_mesh mesh, const lcl_scheme_options* scheme, const lcl_texture_options* options, lcl_mesh* textured,
                                lcl_solve_report* report);
 
