@@ -32,17 +32,16 @@ __kernel __attribute__((reqd_work_group_size(LCL_GROUP, 1, 1))) void lcl_cg_upda
     const int lane = get_local_id(0);
     const lcl_block block = blocks[first_block + get_group_id(0)];
     sumn sum = (sumn)(0);
-    real worst = 0;
+    LCL_NORM(real)
     for (int row = block.first_row + lane; row < block.first_row + block.row_count; row += LCL_GROUP) {
         x[row] += alpha * p[row];
         const realn residual = r[row] - alpha * q[row];
         r[row] = residual;
         sum += LCL_TO_SUM(scaling[row] * residual * residual);
-        const real square = lcl_square(residual);
-        worst = LCL_LARGER(worst, square);
+        LCL_NORM_TAKE(LCL_LARGER, residual)
     }
     LCL_GROUP_STORE_SUM(sum, sum_scratch, sums, first_block + get_group_id(0));
-    LCL_GROUP_STORE_MAX(worst, norm_scratch, norms, first_block + get_group_id(0));
+    LCL_NORM_STORE(LCL_SAME, norm_scratch, norms, first_block + get_group_id(0))
 }
 
 /// p = r + beta p. beta: one a channel. r: n x LCL_WIDTH, read; p: updated.

@@ -10,22 +10,22 @@
 #define LCL_RELAX_PLUS(row, ax, own, third_term)                                            \
     {                                                                                       \
         const realn residual = m[row] - (ax);                                               \
-        worst = LCL_LARGER_SQUARE(worst, lcl_square(residual));                          \
+        LCL_NORM_TAKE(LCL_LARGER_SQUARE, residual)                                          \
         y[row] = a * x[row] + (b + b_jacobi * lcl_inverse(own)) * residual third_term;      \
     }
 #define LCL_RELAX(row, ax, own) LCL_RELAX_PLUS(row, ax, own, )
 #define LCL_RELAX_THREE_TERM(row, ax, own) LCL_RELAX_PLUS(row, ax, own, +c * d[row])
 
-/// first_block: block of work-group 0. m, x: n x LCL_WIDTH, read. y: the same shape, rows of the blocks written. norms: largest squared row norm of each block, at the block's number.
+/// first_block: block of work-group 0. m, x: n x LCL_WIDTH, read. y: the same shape, rows of the blocks written. norms: largest squared row norm of each block, at the block's number (reduce.cl.h).
 __kernel __attribute__((reqd_work_group_size(LCL_GROUP, 1, 1))) void lcl_relax(const int first_block, LCL_STENCILS, const real a, const real b, const real b_jacobi,
                                                                               const __global realn *restrict m, const __global realn *restrict x,
                                                                               __global realn *restrict y, __global real *restrict norms) {
     LCL_SCRATCH(real, scratch)
     const int lane = get_local_id(0);
     const lcl_block block = blocks[first_block + get_group_id(0)];
-    square_bits worst = 0;
+    LCL_NORM(square_bits)
     LCL_FOR_EACH_ROW(block, x, LCL_RELAX)
-    LCL_GROUP_STORE_MAX(LCL_SQUARE(worst), scratch, norms, first_block + get_group_id(0));
+    LCL_NORM_STORE(LCL_SQUARE, scratch, norms, first_block + get_group_id(0))
 }
 
 /// The same with + c d; d: n x LCL_WIDTH, read; it may be y.
@@ -35,9 +35,9 @@ __kernel __attribute__((reqd_work_group_size(LCL_GROUP, 1, 1))) void lcl_relax_t
     LCL_SCRATCH(real, scratch)
     const int lane = get_local_id(0);
     const lcl_block block = blocks[first_block + get_group_id(0)];
-    square_bits worst = 0;
+    LCL_NORM(square_bits)
     LCL_FOR_EACH_ROW(block, x, LCL_RELAX_THREE_TERM)
-    LCL_GROUP_STORE_MAX(LCL_SQUARE(worst), scratch, norms, first_block + get_group_id(0));
+    LCL_NORM_STORE(LCL_SQUARE, scratch, norms, first_block + get_group_id(0))
 }
 
 /// One phase of a chain of sweeps (chain.cl.h), three-term: each sweep's d is what it overwrites. chain: a, b, b_jacobi, c of each sweep. norms: norm_stride a sweep, at the block's number.
@@ -50,7 +50,7 @@ __kernel __attribute__((reqd_work_group_size(LCL_GROUP, 1, 1))) void lcl_relax_p
     const __global realn *x = sweep % 2 == 0 ? even : odd;
     __global realn *y = sweep % 2 == 0 ? odd : even;
     const __global realn *d = y;
-    square_bits worst = 0;
+    LCL_NORM(square_bits)
     LCL_FOR_EACH_ROW(block, x, LCL_RELAX_THREE_TERM)
-    LCL_GROUP_STORE_MAX(LCL_SQUARE(worst), scratch, norms, sweep * norm_stride + first_block + index);
+    LCL_NORM_STORE(LCL_SQUARE, scratch, norms, sweep * norm_stride + first_block + index)
 }

@@ -4,22 +4,21 @@
 #include "reduce.cl.h"
 #include "rows.cl.h"
 
-/// first_block: block of work-group 0. m, x: n x LCL_WIDTH wide rows (LCL_FLOAT_FIELDS: floats), read. r: n x LCL_WIDTH floats, rows of the blocks written. norms: largest squared row norm of each block.
+/// first_block: block of work-group 0. m, x: n x LCL_WIDTH wide rows (LCL_FLOAT_FIELDS: floats), read. r: n x LCL_WIDTH floats, rows of the blocks written. norms: largest squared row norm of each block (reduce.cl.h).
 __kernel __attribute__((reqd_work_group_size(LCL_GROUP, 1, 1))) void lcl_residual(const int first_block, LCL_STENCILS, const __global fieldn *restrict m, const __global fieldn *restrict x,
                                                                                  __global floatn *restrict r, __global float *restrict norms) {
     LCL_SCRATCH(float, scratch)
     const int lane = get_local_id(0);
     const lcl_block block = blocks[first_block + get_group_id(0)];
-    float worst = 0;
+    LCL_NORM(float)
 #define LCL_RESIDUAL(row, ax, own)                                            \
     {                                                                         \
         const floatn residual = lcl_narrow(lcl_add(LCL_ROW(m[row]), lcl_minus(ax)));   \
-        const float square = lcl_square_of_floats(residual);                         \
-        worst = LCL_LARGER(worst, square);                                    \
+        LCL_NORM_TAKE(LCL_LARGER, residual)                                   \
         r[row] = residual;                                                    \
     }
     LCL_FOR_EACH_ROW(block, x, LCL_RESIDUAL)
-    LCL_GROUP_STORE_MAX(worst, scratch, norms, first_block + get_group_id(0));
+    LCL_NORM_STORE(LCL_SAME, scratch, norms, first_block + get_group_id(0))
 }
 
 /// first, count: rows. d: n x LCL_WIDTH floats, read. x: n x LCL_WIDTH rows, x += d in place.

@@ -3,7 +3,7 @@
 //
 // Build options: LCL_REAL float (default) or double; LCL_WIDTH channels in a row of a field, 1, 2, 4 (default) or 8; LCL_GROUP work-items that sweep one block together, 1 (default, best on
 // CPUs) or a power of two (GPUs); LCL_HAS_DOUBLE where the device has double precision; LCL_PAIR: rows are pairs of floats, 48 bits, for devices that have none;
-// LCL_FLOAT_FIELDS: fields are floats although LCL_REAL (or LCL_PAIR) is wider.
+// LCL_MIXED: rows begin with x, y, z, and further channels follow; LCL_FLOAT_FIELDS: fields are floats although LCL_REAL (or LCL_PAIR) is wider.
 #ifndef LCL_TYPES_CL_H
 #define LCL_TYPES_CL_H
 
@@ -128,10 +128,6 @@ inline floatn lcl_narrow(realn a) { return LCL_JOIN(convert_float, LCL_WIDTH)(a)
 #define LCL_SQUARE_OF(a) (dot((a).lo, (a).lo) + dot((a).hi, (a).hi))
 #else
 #define LCL_SQUARE_OF(a) dot(a, a)
-#endif
-inline float lcl_square_of_floats(floatn a) { return LCL_SQUARE_OF(a); }
-#ifndef LCL_PAIR
-inline real lcl_square(realn a) { return LCL_SQUARE_OF(a); }
 #endif
 
 /* Rows of fields: of the sums' own type, or floats of which wide sums are made. */

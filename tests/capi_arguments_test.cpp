@@ -84,6 +84,8 @@ TEST_CASE("a missing argument of a mesh function is refused by its name", "[capi
         {"mesh", [&] { return lcl_mesh_set_property(nullptr, "x", points); }},
         {"name", [&] { return lcl_mesh_set_property(mesh, nullptr, points); }},
         {"values", [&] { return lcl_mesh_set_property(mesh, "x", nullptr); }},
+        {"mesh", [&] { return lcl_mesh_set_colours(nullptr, points); }},
+        {"colours", [&] { return lcl_mesh_set_colours(mesh, nullptr); }},
         {"mesh",
          [&] {
              lcl_suitability out = LCL_SUITABILITY_INIT;
@@ -111,6 +113,18 @@ TEST_CASE("a missing argument of a context, an operator or a solve is refused by
     lcl_diagnosis diagnosis = LCL_DIAGNOSIS_INIT;
     lcl_scheme_options options = LCL_SCHEME_OPTIONS_INIT, no_subset = options, no_owned = options;
     no_subset.subset_count = no_owned.owned_count = 2;
+    lcl_feature_options features = LCL_FEATURE_OPTIONS_INIT;
+    features.subset_count = 2;
+    const int64_t offsets[] = {0, 1};
+    const int32_t column = 0;
+    const double weight = 1;
+    const auto create_rows = [&](const int64_t* starts, const int32_t* columns, const double* weights, lcl_operator* out) {
+        lcl_rows rows = LCL_ROWS_INIT;
+        rows.row_count = 1;
+        rows.offsets = starts, rows.columns = columns, rows.weights = weights;
+        return lcl_operator_create_rows(context, &rows, out);
+    };
+    const lcl_rows rows = LCL_ROWS_INIT;
     check_all({
         {"info", [&] { return lcl_device_get_info(0, nullptr); }},
         {"context", [&] { return lcl_context_create(nullptr, nullptr); }},
@@ -123,6 +137,16 @@ TEST_CASE("a missing argument of a context, an operator or a solve is refused by
         {"A", [&] { return lcl_operator_create(context, mesh, nullptr, nullptr); }},
         {"subset", [&] { return lcl_operator_create(context, mesh, &no_subset, &made); }},
         {"owned", [&] { return lcl_operator_create(context, mesh, &no_owned, &made); }},
+        {"context", [&] { return lcl_operator_create_rows(nullptr, &rows, &made); }},
+        {"rows", [&] { return lcl_operator_create_rows(context, nullptr, &made); }},
+        {"A", [&] { return lcl_operator_create_rows(context, &rows, nullptr); }},
+        {"rows.offsets", [&] { return create_rows(nullptr, &column, &weight, &made); }},
+        {"rows.columns", [&] { return create_rows(offsets, nullptr, &weight, &made); }},
+        {"rows.weights", [&] { return create_rows(offsets, &column, nullptr, &made); }},
+        {"context", [&] { return lcl_operator_create_features(nullptr, mesh, nullptr, &made); }},
+        {"mesh", [&] { return lcl_operator_create_features(context, nullptr, nullptr, &made); }},
+        {"A", [&] { return lcl_operator_create_features(context, mesh, nullptr, nullptr); }},
+        {"subset", [&] { return lcl_operator_create_features(context, mesh, &features, &made); }},
         {"A", [&] { return lcl_operator_get_scheme(nullptr, &options); }},
         {"options", [&] { return lcl_operator_get_scheme(A, nullptr); }},
         {"A", [&] { return lcl_operator_get_row(nullptr, 0, nullptr, nullptr, 0, nullptr); }},

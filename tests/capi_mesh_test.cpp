@@ -560,6 +560,53 @@ TEST_CASE("a refined mesh stands for the same surface, creases and corners inclu
     CHECK(largest_difference(fine_limit, limit) <= 1e-14);  // coordinates up to 1, rows of up to 13 rounded weights in two steps
 }
 
+TEST_CASE("creases by angle stay those of the points that the mesh had when it was interpolated", "[capi][mesh][refine]") {
+    const Mesh mesh = make_mesh(shapes::box_with_crease_angle());
+    const int32_t creases = info_of(mesh.get()).creases;
+    REQUIRE(creases == 12 * 3);
+    std::vector<double> points = points_of(mesh.get());
+    for (std::size_t i = 2; i < points.size(); i += 3) points[i] = 0;  // flat: no angle is left but half turns
+    succeed(lcl_mesh_set_points(mesh.get(), points.data(), 3));
+    CHECK(info_of(mesh.get()).creases == creases);
+    CHECK(info_of(refined(mesh.get(), 1).get()).creases == 2 * creases);
+    CHECK(info_of(refined(mesh.get(), -1).get()).creases == creases);
+}
+
+TEST_CASE("without a refinement a mesh keeps texture coordinates, groups and materials", "[capi][mesh][refine]") {
+    const std::string text = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvt 1 0\nmtllib m.mtl\ng side\nusemtl m\nf 1/1 2/2 3/2 4/1\n";
+    const Mesh copy = refined(read_text(text, LCL_FORMAT_OBJ).get(), -1);
+    CHECK(notes_of(copy.get(), LCL_NOTE_WARNING).empty());
+    const io_test::TemporaryFolder folder;
+    succeed(lcl_mesh_write(copy.get(), folder.file("copy.obj").c_str(), LCL_FORMAT_OBJ));
+    CHECK(io_test::file_bytes(folder.file("copy.obj")) == text);
+}
+
+TEST_CASE("colours are set in 8 bits, in the place of those that were there", "[capi][mesh][io]") {
+    const io_test::TemporaryFolder folder;
+    const Mesh mesh = read_text("v 0 0 0 0.1 0.2 0.3 0.5\nv 1 0 0 0.4 0.5 0.6 0.5\nv 0 1 0 0.7 0.8 0.9 0.5\nf 1 2 3\n", LCL_FORMAT_OBJ);
+    const std::vector<double> colours{1, 0, 0.5, 0, 1, 0.2, 0.002, 0.999, 1};
+    succeed(lcl_mesh_set_colours(mesh.get(), colours.data()));
+    REQUIRE(lcl_mesh_property_count(mesh.get()) == 4);
+    const double expected[4][3] = {
+        {255, 0, 1}, {0, 255, 255}, {128, 51, 255}, {0.5, 0.5, 0.5}};  // 127.5 is rounded up; 0.002 * 255 = 0.51; 0.999 * 255 = 254.7
+    for (int32_t index = 0; index < 4; ++index) {
+        CHECK(lcl_mesh_property_is_colour(mesh.get(), index) == 1);
+        std::vector<double> found(3);
+        succeed(lcl_mesh_get_property(mesh.get(), index, found.data()));
+        CHECK(found == std::vector<double>(expected[index], expected[index] + 3));
+    }
+    succeed(lcl_mesh_write(mesh.get(), folder.file("x.ply").c_str(), LCL_FORMAT_BY_ENDING));
+    CHECK_THAT(io_test::file_bytes(folder.file("x.ply")), Catch::Matchers::Contains("property uchar red"));
+
+    const Mesh plain = make_mesh(shapes::octahedron());
+    std::vector<double> white(18, 1.0);
+    succeed(lcl_mesh_set_colours(plain.get(), white.data()));
+    succeed(lcl_mesh_write(plain.get(), folder.file("x.obj").c_str(), LCL_FORMAT_BY_ENDING));
+    CHECK_THAT(io_test::file_bytes(folder.file("x.obj")), Catch::Matchers::Contains(" 1 1 1\n"));
+    white[4] = 1.5;
+    refuse(lcl_mesh_set_colours(plain.get(), white.data()), LCL_ERROR_INVALID_ARGUMENT, "green of vertex 1 is 1.5");
+}
+
 TEST_CASE("colours and properties are refined as the points are, texture coordinates are dropped with a note", "[capi][mesh][refine]") {
     const lcl_scheme scheme_name = GENERATE(LCL_SCHEME_CATMULL_CLARK, LCL_SCHEME_DOO_SABIN);
     const shapes::Shape shape = shapes::grid_with_creases();

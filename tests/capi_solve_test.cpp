@@ -428,6 +428,12 @@ TEST_CASE("a singular operator is named with its vertices and the cure, and left
     CHECK(kept_going.report.iterations == 7);
     const oracle::History expected = oracle::pia(oracle::to_sparse(oracle_rows(shape, options)), matrix_of(rough, 3), 7);
     CHECK(largest_difference(kept_going.P, values_of(expected.points)) <= 1e-6);
+
+    solve.max_iterations = 0;
+    solve.solver = LCL_SOLVER_AUTO;  // conjugate gradients, which meet the null vector and take it for a negative eigenvalue
+    const Solved by_auto(A.get(), rough, solve);
+    CHECK(by_auto.status == LCL_ERROR_SINGULAR);
+    CHECK_THAT(by_auto.report.message, Catch::Matchers::Contains("singular"));
 }
 
 TEST_CASE("an indefinite operator is told by its status", "[capi][solve][singular]") {

@@ -1,192 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The program as scripts see it: exit codes, files, streams, report. It is run as a process of its own.
-#include <algorithm>
-#include <array>
 #include <chrono>
-#include <cmath>
 #include <csignal>
-#include <cstdlib>
-#include <filesystem>
-#include <fstream>
-#include <iterator>
-#include <sstream>
-#include <string>
 #include <thread>
-#include <vector>
 
-#include <fcntl.h>
-#include <sys/wait.h>
-#include <unistd.h>
+#include "tests/cli_support.h"
 
-#include <catch2/catch.hpp>
-#include <nlohmann/json.hpp>
+using namespace cli_test;
 
 namespace {
 
-namespace fs = std::filesystem;
-using nlohmann::json;
-using Point = std::array<double, 3>;
-
-std::string program() {
-    if (const char* path = std::getenv("LIMITCL_PROGRAM")) return path;
-#ifdef LIMITCL_PROGRAM
-    return LIMITCL_PROGRAM;
-#else
-    return "limitcl";
-#endif
-}
-
-/// A folder of its own for each test case, gone at its end.
-struct Folder {
-    fs::path path;
-    Folder() {
-        std::string pattern = (fs::temp_directory_path() / "limitcl-cli-XXXXXX").string();
-        path = mkdtemp(pattern.data());
-    }
-    ~Folder() { fs::remove_all(path); }
-    Folder(const Folder&) = delete;
-    Folder& operator=(const Folder&) = delete;
-
-    std::string file(const std::string& name, const std::string& content) const {
-        std::ofstream(path / name, std::ios::binary) << content;
-        return name;
-    }
-    std::string read(const std::string& name) const {
-        std::ifstream stream(path / name, std::ios::binary);
-        return {std::istreambuf_iterator<char>(stream), {}};
-    }
-    bool has(const std::string& name) const { return fs::exists(path / name); }
-    std::size_t entries() const { return static_cast<std::size_t>(std::distance(fs::directory_iterator(path), {})); }
-};
-
-struct Outcome {
-    int exit_code;
-    std::string out, err;
-};
-
-/// Runs the program in the folder. `arguments` and `environment` are shell text.
-Outcome run(const Folder& folder, const std::string& arguments, const std::string& environment = "", const std::string& input = "/dev/null") {
-    const Folder streams;
-    const std::string out = (streams.path / "out").string(), err = (streams.path / "err").string();
-    const std::string command =
-        "cd '" + folder.path.string() + "' && " + environment + " '" + program() + "' " + arguments + " < '" + input + "' > '" + out + "' 2> '" + err + "'";
-    const int status = std::system(command.c_str());
-    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, streams.read("out"), streams.read("err")};
-}
-
-/// Starts a program in the folder with a standard input that says nothing until this process ends.
-pid_t start(const Folder& folder, const std::vector<std::string>& words) {
-    int silent[2];
-    REQUIRE(pipe2(silent, O_CLOEXEC) == 0);
-    std::vector<char*> arguments;
-    for (const std::string& word : words) arguments.push_back(const_cast<char*>(word.c_str()));
-    arguments.push_back(nullptr);
-    const pid_t child = fork();
-    if (child == 0) {
-        const int nowhere = open("/dev/null", O_WRONLY);
-        dup2(silent[0], STDIN_FILENO);
-        dup2(nowhere, STDOUT_FILENO);
-        dup2(nowhere, STDERR_FILENO);
-        if (chdir(folder.path.c_str()) == 0) execvp(arguments[0], arguments.data());
-        _exit(127);
-    }
-    close(silent[0]);
-    return child;
-}
-
-json report_of(const Outcome& outcome) {
-    INFO(outcome.out << outcome.err);
-    REQUIRE(json::accept(outcome.out));
-    return json::parse(outcome.out);
-}
-
-std::size_t line_count(const std::string& text) { return static_cast<std::size_t>(std::count(text.begin(), text.end(), '\n')); }
-
-/// The last line: with the summary before it, the line of a failure.
-std::string last_line(const std::string& text) {
-    const std::size_t end = text.find_last_not_of('\n');
-    if (end == std::string::npos) return "";
-    const std::size_t before = text.rfind('\n', end);
-    return text.substr(before == std::string::npos ? 0 : before + 1, end - (before == std::string::npos ? 0 : before + 1) + 1);
-}
-
-bool contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
-
-std::vector<Point> obj_points(const std::string& text) {
-    std::vector<Point> points;
-    std::istringstream lines(text);
-    for (std::string line; std::getline(lines, line);) {
-        std::istringstream words(line);
-        std::string word;
-        Point point{};
-        if (words >> word && word == "v" && words >> point[0] >> point[1] >> point[2]) points.push_back(point);
-    }
-    return points;
-}
-
-double largest_difference(const std::vector<Point>& a, const std::vector<Point>& b) {
-    REQUIRE(a.size() == b.size());
-    REQUIRE_FALSE(a.empty());
-    double largest = 0.0;
-    for (std::size_t index = 0; index < a.size(); ++index)
-        largest = std::max(largest, std::hypot(a[index][0] - b[index][0], a[index][1] - b[index][1], a[index][2] - b[index][2]));
-    return largest;
-}
-
-const std::string cube = R"(v -1 -1 -1
-v 1 -1 -1
-v 1 1 -1
-v -1 1 -1
-v -1 -1 1
-v 1 -1 1
-v 1 1 1
-v -1 1 1
-f 4 3 2 1
-f 5 6 7 8
-f 1 2 6 5
-f 2 3 7 6
-f 3 4 8 7
-f 4 1 5 8
-)";
-
-const std::string octahedron = R"(v 1 0 0
-v 0 1.5 0
-v 0 0 1
-v -1 0.25 0
-v 0 -1 0
-v 0 0 -2
-f 1 2 3
-f 2 4 3
-f 4 5 3
-f 5 1 3
-f 2 1 6
-f 4 2 6
-f 5 4 6
-f 1 5 6
-)";
-
-/// (n+1)^2 vertices of a quad grid with heights that no polynomial gives: rough data, and a boundary.
-std::string bumpy_grid(int n) {
-    std::ostringstream text;
-    for (int y = 0; y <= n; ++y) {
-        for (int x = 0; x <= n; ++x) text << "v " << x << " " << y << " " << ((x * 7 + y * 13) % 5) * 0.2 << "\n";
-    }
-    for (int y = 0; y < n; ++y) {
-        for (int x = 0; x < n; ++x) {
-            const int first = y * (n + 1) + x + 1;
-            text << "f " << first << " " << first + 1 << " " << first + n + 2 << " " << first + n + 1 << "\n";
-        }
-    }
-    return text.str();
-}
-
 const double grid_diagonal_6 = std::sqrt(6.0 * 6.0 + 6.0 * 6.0 + 0.8 * 0.8);
-
-std::string coloured_tetrahedron_ply() {
-    return "ply\nformat ascii 1.0\nelement vertex 4\nproperty double x\nproperty double y\nproperty double z\nproperty double red\nproperty double green\n"
-           "property double blue\nproperty float quality\nelement face 4\nproperty list uchar int vertex_indices\nend_header\n"
-           "0 0 0 1 0 0 5\n1 0 0 0 1 0 -3\n0 1 0 0 0 1 7\n0 0 1 0.5 0.5 0.5 1\n3 0 2 1\n3 0 1 3\n3 1 2 3\n3 2 0 3\n";
-}
 
 }  // namespace
 
@@ -195,8 +19,10 @@ TEST_CASE("help lists the commands of this version and the program says what it 
     const Outcome help = run(folder, "--help");
     CHECK(help.exit_code == 0);
     CHECK(help.err.empty());
-    for (const char* command : {"devices", "selftest", "info", "interpolate", "limit", "refine"}) CHECK(contains(help.out, command));
-    for (const char* command : {"evaluate", "closest", "spectrum", "denoise", "morph", "texture"}) CHECK_FALSE(contains(help.out, command));
+    for (const char* command :
+         {"devices", "selftest", "info", "interpolate", "limit", "refine", "expand", "spectrum", "denoise", "sharpen", "morph", "texture"})
+        CHECK(contains(help.out, std::string("\n  ") + command + " "));
+    for (const char* command : {"evaluate", "closest", "surface "}) CHECK_FALSE(contains(help.out, std::string("\n  ") + command));
     const Outcome command_help = run(folder, "interpolate --help");
     CHECK(command_help.exit_code == 0);
     for (const char* option : {"--output", "--solver", "--subset", "--sweeps", "--alpha", "--boundary", "--tol", "--report"})
@@ -241,12 +67,8 @@ TEST_CASE("what comes with a later version is refused by name", "[cli][exit]") {
     folder.file("in.obj", octahedron);
     const auto [arguments, name] = GENERATE(table<std::string, std::string>({{"evaluate in.obj --at f.csv -o o.csv", "'evaluate'"},
                                                                              {"closest in.obj", "'closest'"},
-                                                                             {"expand in.obj -o o.obj --sum 3", "'expand'"},
-                                                                             {"spectrum in.obj", "'spectrum'"},
-                                                                             {"denoise in.obj -o o.obj", "'denoise'"},
-                                                                             {"sharpen --help", "'sharpen'"},
-                                                                             {"--quiet morph a.obj b.obj -o o_%03d.obj", "'morph'"},
-                                                                             {"texture in.obj -o o.ply", "'texture'"},
+                                                                             {"surface --help", "'surface'"},
+                                                                             {"--quiet closest in.obj", "'closest'"},
                                                                              {"surface in.xyz -o o.obj", "'surface'"},
                                                                              {"limit in.obj -o o.obj --normals", "--normals"},
                                                                              {"interpolate in.obj -o o.obj --normals mesh --lambda 0.3", "--normals"},

@@ -227,6 +227,52 @@ TEST_CASE("apply and step are the limit operator and a PIA sweep", "[cpp][field]
     CHECK(inverse.norm >= 1 / loop_alpha_4 * (1 - 1e-6));  // the octahedron itself is amplified by 55/24
 }
 
+TEST_CASE("operators of rows and of features stand in the place of limit operators", "[cpp][rows]") {
+    const Context context;
+    Rows rows;  // 0.6 x_i and the mean of the two neighbours round a ring
+    for (int i = 0; i < 5; ++i) {
+        rows.add(i, 0.6), rows.add((i + 1) % 5, 0.2), rows.add((i + 4) % 5, 0.2);
+        rows.end_row();
+        rows.scaling.push_back(1);
+    }
+    const LimitOperator A = LimitOperator::from_rows(context, rows);
+    CHECK(A.vertex_count() == 5);
+    CHECK(A.scheme().scheme == Scheme::by_faces);
+    CHECK(A.row(2) == std::vector<std::pair<std::int32_t, double>>{{1, 0.2}, {2, 0.6}, {3, 0.2}});
+    CHECK(A.diagnose().lambda_min_bound == Approx(0.2));
+    const std::vector<double> M{0, 0, 0, 1, 0, 2, 0, 3, 0, 1, 1, 1, 2, 0, 4};
+    SolveOptions options;
+    options.solver = Solver::cg;
+    options.tolerance = 1e-9;
+    const auto [P, report] = interpolate(A, M, 3, options);
+    CHECK(report.converged);
+    CHECK(largest_difference(A.limit_points(P, 3, Precision::full), M) <= 6e-9);  // the box has a diagonal of 5.4
+
+    rows.scaling.pop_back();
+    CHECK(status_of([&] { LimitOperator::from_rows(context, rows); }) == LCL_ERROR_INVALID_ARGUMENT);
+    rows.scaling.clear();
+    const LimitOperator without = LimitOperator::from_rows(context, rows);
+    CHECK(status_of([&] { (void)interpolate(without, M, 3, options); }) == LCL_ERROR_INVALID_ARGUMENT);
+    rows.weights[7] = -3;
+    CHECK(status_of([&] { LimitOperator::from_rows(context, rows); }) == LCL_ERROR_UNSUPPORTED);
+    rows.columns.pop_back();
+    CHECK(status_of([&] { LimitOperator::from_rows(context, rows); }) == LCL_ERROR_INVALID_ARGUMENT);
+    rows.offsets.clear();
+    CHECK(status_of([&] { LimitOperator::from_rows(context, rows); }) == LCL_ERROR_INVALID_ARGUMENT);
+    CHECK(status_of([&] { LimitOperator::from_rows(context, {}); }) == LCL_ERROR_INVALID_ARGUMENT);
+
+    FeatureWeights weights;
+    weights.diagonal_factor = 4;
+    weights.subset = {4, 5};
+    const LimitOperator features = LimitOperator::keeping_features(context, octahedron(), weights);
+    CHECK(features.row(0) == std::vector<std::pair<std::int32_t, double>>{{0, 1.0}});
+    REQUIRE(features.row(4).size() == 5);
+    CHECK(features.row(4)[4].second == Approx(0.75));
+    CHECK(features.row(4)[0].second == Approx(0.25 / 4));  // four neighbours alike
+    weights.diagonal_factor = 1;
+    CHECK(status_of([&] { LimitOperator::keeping_features(context, octahedron(), weights); }) == LCL_ERROR_INVALID_ARGUMENT);
+}
+
 TEST_CASE("singular is a result that can be made an exception", "[cpp][solve]") {
     const Context context;
     const LimitOperator A(context, cube());
@@ -294,4 +340,52 @@ TEST_CASE("a mesh goes through a file and through memory", "[cpp][io]") {
     CHECK(format_of_path("a/b.PLY.gz") == Format::ply);
     CHECK(status_of([] { format_of_path("a.xyz"); }) == LCL_ERROR_INVALID_ARGUMENT);
     std::remove(path.c_str());
+}
+
+TEST_CASE("textures come with their report, and failures of their solves are errors unless one insists", "[cpp][texture]") {
+    const Context context;
+    TextureOptions options;
+    options.octaves = 2;
+    options.levels = 2;
+    options.colours = {1, 0, 0, 0, 0, 1};
+    int calls = 0;
+    options.progress = [&](int, double, double) { return ++calls > 0; };
+    const Texture texture = make_texture(context, octahedron(), options);
+    CHECK(texture.report.status == LCL_OK);
+    CHECK(texture.report.converged);
+    CHECK(calls > 0);
+    REQUIRE(texture.mesh.vertex_count() == 4 * 16 + 2);
+    const std::vector<double> noise = texture.mesh.property("noise"), red = texture.mesh.property("red"), blue = texture.mesh.property("blue");
+    for (std::size_t v = 0; v < noise.size(); ++v) {
+        CHECK(red[v] == std::round(255 * (1 - noise[v])));  // two colours: a straight line
+        CHECK(blue[v] == std::round(255 * noise[v]));
+    }
+    options.seed = 1;
+    CHECK(make_texture(context, octahedron(), options).mesh.property("noise") != noise);
+    options.seed = 0;
+    options.frequency = 3;
+    CHECK(make_texture(context, octahedron(), options).mesh.property("noise") != noise);
+
+    CHECK(status_of([&] { return make_texture(context, cube(), options); }) == LCL_ERROR_SINGULAR);
+    options.keep_going = true;
+    const Texture insisted = make_texture(context, cube(), options);
+    CHECK(insisted.report.status == LCL_ERROR_SINGULAR);
+    CHECK(insisted.mesh.vertex_count() == 98);
+    SchemeOptions scheme;
+    scheme.alpha_auto = true;
+    CHECK(make_texture(context, cube(), options, scheme).report.status == LCL_OK);
+    options.max_iterations = 1;
+    options.tolerance = 1e-12;
+    CHECK(make_texture(context, cube(), options, scheme).report.status == LCL_ERROR_NOT_CONVERGED);
+
+    options.progress = [](int, double, double) { return false; };
+    CHECK(status_of([&] { return make_texture(context, octahedron(), options); }) == LCL_ERROR_CANCELLED);
+    options.progress = [](int, double, double) -> bool { throw std::runtime_error("from the caller"); };
+    CHECK_THROWS_WITH(make_texture(context, octahedron(), options), "from the caller");
+    options.progress = nullptr;
+    options.colours.pop_back();
+    CHECK(status_of([&] { return make_texture(context, octahedron(), options); }) == LCL_ERROR_INVALID_ARGUMENT);
+    options.colours.clear();
+    scheme.lambda_per_vertex = {0.5};
+    CHECK(status_of([&] { return make_texture(context, cube(), options, scheme); }) == LCL_ERROR_INVALID_ARGUMENT);
 }

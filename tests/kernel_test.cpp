@@ -302,8 +302,8 @@ private:
             double square = 0, other = 0;
             for (const ChannelBlock& block : channel_blocks(channels_)) {
                 double sum = 0;
-                for (int c = block.first; c < block.first + block.count; ++c) sum += residual[at(row, c)] * residual[at(row, c)];
-                (block.first == 0 ? square : other) = block.first == 0 ? sum : std::max(other, sum);
+                for (int c = block.first; c < block.first + block.count; ++c) (c < 3 ? square : sum) += residual[at(row, c)] * residual[at(row, c)];
+                other = std::max(other, sum);
             }
             norms.position = std::max(norms.position, std::sqrt(square));
             norms.others = std::max(norms.others, std::sqrt(other));
@@ -312,7 +312,7 @@ private:
     }
     ResidualNorms norms_of(const Values& residual) const { return norms_of(residual, all()); }
 
-    /// Norms that the last launch left, against those of m - A x, or of -m where the residual itself is given. Further channels are measured eight together.
+    /// Norms that the last launch left, against those of m - A x, or of -m where the residual itself is given. Further channels are measured together with those of their block.
     void check_norms(const Field& like, const Values& m, double tolerance) { check_norms(like, m, tolerance, all(), false); }
     void check_norms(const Field& like, const Values& m, double tolerance, const Part& part, bool is_residual) {
         Values residual(m.size());

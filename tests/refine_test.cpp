@@ -442,6 +442,21 @@ TEST_CASE("what a scheme cannot refine is refused in one sentence", "[refine][er
     CHECK_THROWS_AS(refine(shapes::no_faces().mesh, {}, catmull_clark(0), 1), BadInput);
 }
 
+TEST_CASE("the size of a refined mesh is foretold", "[refine]") {
+    for (const auto& shape : shapes_with_all_rules())
+        for (const SchemeOptions& options : options_for(shape))
+            for (const int levels : {0, 1, 3}) {
+                const Topology topology = build_topology(shape.mesh);
+                const RefinedSize size = refined_size(shape.mesh, topology, find_features(shape.mesh, topology, shape.features), options, levels);
+                const PolygonMesh refined = refine(shape.mesh, shape.features, options, levels).mesh;
+                INFO(shape.name << ", " << levels << " levels");
+                CHECK(size.vertices == refined.vertex_count);
+                CHECK(size.edges == build_topology(refined).edge_count);
+                CHECK(size.faces == refined.face_count());
+                CHECK(size.corners == refined.corner_count());
+            }
+}
+
 TEST_CASE("levels that cannot be numbered or held are refused at once with the number", "[refine][errors]") {
     // A cube has 6 4^k quads, that is 24 4^k corners, after k levels: 2^31 is passed by the corners at level 14, the memory before that on small machines.
     CHECK_THROWS_AS(refine(shapes::cube().mesh, {}, catmull_clark(0), 40), OutOfMemory);

@@ -48,6 +48,9 @@ RealValue row_value(bool as_double, const ChannelBlock& block, const ChannelValu
 
 void set_argument(cl_kernel kernel, unsigned place, const RealValue& value) { set_argument_bytes(kernel, place, value.bytes.data(), value.size); }
 
+/// Squared norms that kernels leave for a block of rows.
+std::size_t norm_count(const ChannelBlock& block) { return is_mixed(block) ? 2 : 1; }
+
 std::vector<lcl_run> device_runs(const Plan& plan) {
     static_assert(LCL_SHAPE_IDENTITY == static_cast<int>(RowShape::identity) && LCL_SHAPE_RING == static_cast<int>(RowShape::ring) &&
                   LCL_SHAPE_FULL_RING == static_cast<int>(RowShape::full_ring) && LCL_SHAPE_WEIGHTED == static_cast<int>(RowShape::weighted));
@@ -132,7 +135,7 @@ DeviceOperator::Partials& DeviceOperator::partials(const Field& field) {
     Partials& partials = partials_[{field.real(), field.channels()}];
     const std::size_t count = std::max<std::size_t>(1, plan_->blocks.size());
     for (std::size_t b = partials.norms.size(); b < field.blocks().size(); ++b) {
-        partials.norms.emplace_back(context_, LCL_CHAIN * count * sizeof(double), "norms of blocks");
+        partials.norms.emplace_back(context_, LCL_CHAIN * count * norm_count(field.blocks()[b]) * sizeof(double), "norms of blocks");
         partials.sums.emplace_back(context_, count * field.blocks()[b].width * sizeof(double), "sums of blocks");
     }
     return partials;
@@ -140,6 +143,15 @@ DeviceOperator::Partials& DeviceOperator::partials(const Field& field) {
 
 cl_kernel DeviceOperator::kernel(const char* file, const char* name, const Field& field, std::size_t block) {
     return context_->kernel(file, name, kernel_options(*context_, field.real(), field.blocks()[block].width, shape_.group));
+}
+
+cl_kernel DeviceOperator::norm_kernel(const char* file, const char* name, const Field& field, std::size_t block, const std::string& options) {
+    const char* const mixed = is_mixed(field.blocks()[block]) ? " -D LCL_MIXED" : "";
+    return context_->kernel(file, name, options + mixed);
+}
+
+cl_kernel DeviceOperator::norm_kernel(const char* file, const char* name, const Field& field, std::size_t block) {
+    return norm_kernel(file, name, field, block, kernel_options(*context_, field.real(), field.blocks()[block].width, shape_.group));
 }
 
 LaunchSize DeviceOperator::size(const Part& part) const {
@@ -160,10 +172,10 @@ void DeviceOperator::sweep(const Sweep& s, const Field& m, const Field& x, const
     for (std::size_t k = 0; k < x.blocks().size(); ++k) {
         const Buffer& norms = partials(x).norms[k];
         if (d == nullptr)
-            launch(*context_, kernel("relax", "lcl_relax", x, k), size(part), part.first_block, blocks_, runs_, weights(x.real(), false), indices_,
+            launch(*context_, norm_kernel("relax", "lcl_relax", x, k), size(part), part.first_block, blocks_, runs_, weights(x.real(), false), indices_,
                    weighted_offsets_, weighted_indices_, weights(x.real(), true), a, b, b_jacobi, m.buffer(k), x.buffer(k), y.buffer(k), norms);
         else
-            launch(*context_, kernel("relax", "lcl_relax_three_term", x, k), size(part), part.first_block, blocks_, runs_, weights(x.real(), false), indices_,
+            launch(*context_, norm_kernel("relax", "lcl_relax_three_term", x, k), size(part), part.first_block, blocks_, runs_, weights(x.real(), false), indices_,
                    weighted_offsets_, weighted_indices_, weights(x.real(), true), a, b, b_jacobi, c, m.buffer(k), x.buffer(k), d->buffer(k), y.buffer(k),
                    norms);
     }
@@ -177,7 +189,8 @@ DeviceOperator::Phases DeviceOperator::phases(std::size_t sweeps, const Field& f
     if (!is_smooth || part.row_count == 0) return one_by_one;
     std::size_t widest = 0;
     for (std::size_t b = 0; b < field.blocks().size(); ++b) widest = std::max(widest, field.row_bytes(b));
-    const std::size_t row_bytes = fields * widest + sizeof(Index) * plan_->indices.size() / part.row_count;
+    const std::size_t stencil_bytes = sizeof(Index) * plan_->indices.size() + (sizeof(Index) + sizeof(float)) * plan_->weighted_indices.size();
+    const std::size_t row_bytes = fields * widest + stencil_bytes / part.row_count;
     if (row_bytes * part.row_count <= shape_.cache_bytes) return one_by_one;  // all of it stays in cache
     for (Index depth = one_by_one.sweeps; depth > 1; --depth) {
         const Index width = (shape_.phase_blocks + depth - 1) / depth, lag = plan_->reach + 2 * width;
@@ -208,7 +221,7 @@ void DeviceOperator::run_phases(const Phases& phases, const Sweep* sweeps, const
     context_->write_async(chain_, 0, values.size, values.bytes.data(), {}, "uploading the coefficients of a chain of sweeps").wait();
     const auto stride = static_cast<Index>(plan_->blocks.size());
     for (std::size_t k = 0; k < x.blocks().size(); ++k) {
-        const cl_kernel relax = kernel("relax", "lcl_relax_phase", x, k);
+        const cl_kernel relax = norm_kernel("relax", "lcl_relax_phase", x, k);
         set_arguments(relax, 0, 0, phases.width, phases.lag, part.first_block, part.block_count, stride, blocks_, runs_, weights(x.real(), false), indices_,
                       weighted_offsets_, weighted_indices_, weights(x.real(), true), chain_, m.buffer(k), x.buffer(k), y.buffer(k), partials(x).norms[k]);
         enqueue_phases(phases, part, relax);
@@ -238,7 +251,7 @@ void DeviceOperator::wide_residual(const Field& m, const Field& x, Field& r, con
     const char* const fields = x.real() == Real::single ? " -D LCL_FLOAT_FIELDS" : "";
     for (std::size_t b = 0; b < x.blocks().size(); ++b) {
         const std::string options = kernel_options(*context_, Real::wide, x.blocks()[b].width, shape_.group) + fields;
-        launch(*context_, context_->kernel("residual", "lcl_residual", options), size(part), part.first_block, blocks_, runs_, weights(Real::wide, false),
+        launch(*context_, norm_kernel("residual", "lcl_residual", x, b, options), size(part), part.first_block, blocks_, runs_, weights(Real::wide, false),
                indices_, weighted_offsets_, weighted_indices_, weights(Real::wide, true), m.buffer(b), x.buffer(b), r.buffer(b), partials(r).norms[b]);
     }
 }
@@ -278,18 +291,16 @@ std::vector<ResidualNorms> DeviceOperator::norms_of_sweeps(const Field& like, co
     std::vector<ResidualNorms> worst(sweeps);
     const bool as_double = is_double(*context_, like.real());
     const std::size_t bytes = as_double ? sizeof(double) : sizeof(float), stride = plan_->blocks.size();
-    std::vector<unsigned char> raw(((sweeps - 1) * stride + part.block_count) * bytes);
     for (std::size_t b = 0; b < like.blocks().size() && part.block_count > 0; ++b) {
-        context_->read(partials(like).norms[b], part.first_block * bytes, raw.size(), raw.data(), "reading residual norms");
-        for (std::size_t s = 0; s < sweeps; ++s) {
-            double square = 0;
-            for (Index i = 0; i < part.block_count; ++i) {
-                const double value = real_at(raw.data() + (s * stride + i) * bytes, as_double);
-                if (!(value <= square)) square = value;  // keeps a not-a-number
+        const std::size_t count = norm_count(like.blocks()[b]);
+        std::vector<unsigned char> raw(((sweeps - 1) * stride + part.block_count) * count * bytes);
+        context_->read(partials(like).norms[b], part.first_block * count * bytes, raw.size(), raw.data(), "reading residual norms");
+        for (std::size_t s = 0; s < sweeps; ++s)
+            for (std::size_t i = 0; i < part.block_count * count; ++i) {
+                const double size = std::sqrt(real_at(raw.data() + (s * stride * count + i) * bytes, as_double));
+                double& norm = b == 0 && i % count == 0 ? worst[s].position : worst[s].others;
+                if (!(size <= norm)) norm = size;  // keeps a not-a-number
             }
-            double& norm = b == 0 ? worst[s].position : worst[s].others;
-            if (!(std::sqrt(square) <= norm)) norm = std::sqrt(square);
-        }
     }
     return worst;
 }
@@ -321,7 +332,7 @@ ChannelValues DeviceOperator::cg_apply(const Field& p, Field& q, const Part& par
 // x += alpha p, r -= alpha q
 ChannelValues DeviceOperator::cg_update(const ChannelValues& alpha, const Field& p, const Field& q, Field& x, Field& r, const Part& part) {
     for (std::size_t b = 0; b < p.blocks().size(); ++b)
-        launch(*context_, kernel("conjugate_gradients", "lcl_cg_update", p, b), size(part), part.first_block, blocks_, scaling(p.real()),
+        launch(*context_, norm_kernel("conjugate_gradients", "lcl_cg_update", p, b), size(part), part.first_block, blocks_, scaling(p.real()),
                row_value(is_double(*context_, p.real()), p.blocks()[b], alpha), p.buffer(b), q.buffer(b), x.buffer(b), r.buffer(b), partials(p).sums[b],
                partials(p).norms[b]);
     return sums(p, part);

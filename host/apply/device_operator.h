@@ -121,6 +121,8 @@ private:
     ScheduleArrays& schedule_arrays(const Schedule& schedule, Real real);
     ChannelValues sums(const Field& field, const Part& part);
     cl_kernel kernel(const char* file, const char* name, const Field& field, std::size_t block);
+    cl_kernel norm_kernel(const char* file, const char* name, const Field& field, std::size_t block);
+    cl_kernel norm_kernel(const char* file, const char* name, const Field& field, std::size_t block, const std::string& options);
     LaunchSize size(const Part& part) const;
     Buffer upload(const void* data, std::size_t bytes, const char* what);
     Buffer upload_doubled(const Array<Index>& rows, const char* what);

@@ -111,6 +111,9 @@ lcl_status lcl_field_match(lcl_field field, lcl_field of) {
         const Transform& transform = transform_of(of, "to match");
         if (field->transform && !same(*field->transform, transform))
             throw InvalidArgument("the field holds values in another centre and scale already: match it before its first upload");
+        const bool is_centred = std::any_of(transform.centre.begin(), transform.centre.end(), [](double centre) { return centre != 0; });
+        if (is_centred && !field->A->system->plan().rows_sum_to_one)
+            throw InvalidArgument("the rows of the field's operator do not sum to 1, and fields of it are kept round 0: upload the values instead");
         field->transform = transform;
         return LCL_OK;
     });

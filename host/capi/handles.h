@@ -71,6 +71,8 @@ struct lcl_mesh_s : lcl::Counted {
     const lcl::Features& sound_features();
     const std::vector<lcl::Defect>& defects();
     lcl::BoundaryRule boundary_rule() const;
+    /// What the mesh has to be read with, creases by angle among the named ones.
+    lcl::FeatureOptions named_features();
     void forget_features();
     /// Before new points: finds the creases by angle, which stay those of the old ones.
     void keep_features_of_positions();
@@ -116,6 +118,18 @@ namespace lcl {
 
 /// Scheme of the options, resolved for a mesh, with ranges checked.
 SchemeOptions scheme_options(lcl_mesh_s& mesh, const lcl_scheme_options& options);
+
+/// The system of lcl_operator_create: scheme resolved, alpha_auto, subset and owned looked at.
+std::unique_ptr<LimitSystem> make_system(lcl_context_s& context, lcl_mesh_s& mesh, const lcl_scheme_options& options);
+
+/// A handle on what `mesh` has become after `levels` refinements: faces, points, features, with notes on what was dropped; without a refinement texture
+/// coordinates, groups and materials are kept. Properties are the caller's task.
+std::unique_ptr<lcl_mesh_s> make_refined_mesh(const lcl_mesh_s& mesh, Refinement&& refined, int levels);
+/// Values of integer types, of which refinement makes fractions, are rounded.
+void round_integers(std::vector<VertexProperty>& properties);
+
+/// Fills the report (which may be null) and gives the status of a solve, whose sentence becomes the thread's last error where it failed.
+lcl_status conclude(const SolveReport& inner, const lcl_solve_options& options, lcl_solve_report* report);
 
 /// Fails for a value, or for the first of many, that is no finite number: "M of vertex 5 is nan in channel 1". Real: float or double.
 void require_finite(double value, Index v, int channel, const char* name);

@@ -8,6 +8,19 @@
 
 using namespace lcl;
 
+namespace {
+
+/// Edge ends of all creases off the boundary.
+std::vector<std::array<Index, 2>> crease_edges(const Topology& topology, const Features& features) {
+    std::vector<std::array<Index, 2>> edges;
+    for (Index e = 0; e < topology.edge_count; ++e)
+        if (features.edge_is_sharp[e] && !topology.is_boundary_edge(e))
+            edges.push_back({topology.origin(topology.edge_half_edge[e]), topology.destination(topology.edge_half_edge[e])});
+    return edges;
+}
+
+}  // namespace
+
 const Topology& lcl_mesh_s::sound_topology() {
     const std::lock_guard<std::mutex> lock(mutex_);
     if (!topology_) topology_ = build_topology(file.mesh);
@@ -62,6 +75,8 @@ BoundaryRule lcl_mesh_s::boundary_rule() const {
     return file.tags.interpolate_boundary == 2 ? BoundaryRule::edge_only : BoundaryRule::edge_and_corner;
 }
 
+FeatureOptions lcl_mesh_s::named_features() { return {boundary_rule(), crease_edges(topology(), features()), feature_options.corners, -1}; }
+
 void lcl_mesh_s::keep_features_of_positions() {
     if (feature_options.crease_angle_degrees > 0) features();
 }
@@ -96,15 +111,6 @@ lcl_mesh adopt(MeshFile file) {
 FileFormat inner_format(lcl_format format) {
     if (format < LCL_FORMAT_BY_ENDING || format > LCL_FORMAT_OM) throw InvalidArgument("format is " + std::to_string(format) + ", it goes from 0 to 5");
     return static_cast<FileFormat>(format);
-}
-
-/// Edge ends of all creases off the boundary.
-std::vector<std::array<Index, 2>> crease_edges(const Topology& topology, const Features& features) {
-    std::vector<std::array<Index, 2>> edges;
-    for (Index e = 0; e < topology.edge_count; ++e)
-        if (features.edge_is_sharp[e] && !topology.is_boundary_edge(e))
-            edges.push_back({topology.origin(topology.edge_half_edge[e]), topology.destination(topology.edge_half_edge[e])});
-    return edges;
 }
 
 /// The tags that make a reader find the same features: creases however they were found, marked corners, the boundary rule where it is not the default.
@@ -186,6 +192,20 @@ bool widen(VertexProperty& property) {
     const bool fits = std::all_of(property.values.begin(), property.values.end(), [&](double v) { return v == std::floor(v) && v >= low && v <= high; });
     if (!fits) property.type = "double";
     return !fits;
+}
+
+/// Red, green and blue in 8 bits from rows of three numbers from 0 to 1.
+std::vector<VertexProperty> colour_columns(const double* colours, Index vertex_count) {
+    std::vector<VertexProperty> columns;
+    for (const char* name : {"red", "green", "blue"}) columns.push_back({name, VertexProperty::Kind::colour, "uchar", {}});
+    for (std::size_t i = 0; i < 3 * static_cast<std::size_t>(vertex_count); ++i) {
+        if (!(colours[i] >= 0 && colours[i] <= 1))
+            throw InvalidArgument("colours: " + columns[i % 3].name + " of vertex " + std::to_string(i / 3) + " is " + std::to_string(colours[i]) +
+                                      ", it goes from 0 to 1",
+                                  {{static_cast<Index>(i / 3)}, {}});
+        columns[i % 3].values.push_back(std::round(255 * colours[i]));
+    }
+    return columns;
 }
 
 /// The values and how often each of them is met; `value` gives those of 0 to count - 1, below zero: not counted.
@@ -487,6 +507,19 @@ lcl_status lcl_mesh_set_property(lcl_mesh mesh, const char* name, const double* 
         found->values.assign(values, values + mesh->file.mesh.vertex_count);
         if (widen(*found))
             mesh->notes[LCL_NOTE_WARNING].push_back("the property '" + wanted + "' holds values now that its integer type cannot: it is kept as double");
+        return LCL_OK;
+    });
+}
+
+lcl_status lcl_mesh_set_colours(lcl_mesh mesh, const double* colours) {
+    return guarded([&] {
+        std::vector<VertexProperty>& properties = required(mesh, "mesh")->file.properties;
+        const std::vector<VertexProperty> columns = colour_columns(required(colours, "colours"), mesh->file.mesh.vertex_count);
+        for (const VertexProperty& column : columns) {
+            const auto found = std::find_if(properties.begin(), properties.end(), [&](const VertexProperty& p) { return p.name == column.name; });
+            if (found == properties.end()) properties.push_back(column);
+            else *found = column;
+        }
         return LCL_OK;
     });
 }

@@ -56,6 +56,22 @@ SchemeOptions scheme_options(lcl_mesh_s& mesh, const lcl_scheme_options& options
     return out;
 }
 
+std::unique_ptr<LimitSystem> make_system(lcl_context_s& context, lcl_mesh_s& mesh, const lcl_scheme_options& given) {
+    SchemeOptions scheme = scheme_options(mesh, given);
+    if (given.alpha_auto != 0 && given.alpha != 0) throw InvalidArgument("alpha is given and alpha_auto is set: choose one");
+    PlanOptions plan;
+    plan.subset = vertex_marks(given.subset, given.subset_count, mesh.file.mesh.vertex_count, "subset");
+    plan.owned = vertex_marks(given.owned, given.owned_count, mesh.file.mesh.vertex_count, "owned");
+    const auto make = [&] { return make_limit_system(context.context, mesh.file.mesh, mesh.topology(), mesh.features(), scheme, plan); };
+    auto system = make();
+    if (given.alpha_auto != 0 && scheme.scheme == Scheme::catmull_clark && wants_other_alpha(*system)) {
+        scheme.alpha = auto_alpha;
+        system = make();
+        context.write_log(LCL_LOG_INFO, "alpha 0.5, since 0 is singular, indefinite or nearly so on this mesh");
+    }
+    return system;
+}
+
 void require_finite(double value, Index v, int channel, const char* name) {
     if (std::isfinite(value)) return;
     const std::string shown = std::isnan(value) ? "nan" : value > 0 ? "inf" : "-inf";
@@ -94,21 +110,9 @@ lcl_status lcl_operator_create(lcl_context context, lcl_mesh mesh, const lcl_sch
         required(A, "A");
         required(context, "context");
         required(mesh, "mesh");
-        const lcl_scheme_options given = options_or(options, LCL_SCHEME_OPTIONS_INIT, "options");
-        SchemeOptions scheme = scheme_options(*mesh, given);
-        if (given.alpha_auto != 0 && given.alpha != 0) throw InvalidArgument("alpha is given and alpha_auto is set: choose one");
-        PlanOptions plan;
-        plan.subset = vertex_marks(given.subset, given.subset_count, mesh->file.mesh.vertex_count, "subset");
-        plan.owned = vertex_marks(given.owned, given.owned_count, mesh->file.mesh.vertex_count, "owned");
         auto handle = std::make_unique<lcl_operator_s>();
         handle->context = share(context);
-        const auto make = [&] { handle->system = make_limit_system(context->context, mesh->file.mesh, mesh->topology(), mesh->features(), scheme, plan); };
-        make();
-        if (given.alpha_auto != 0 && scheme.scheme == Scheme::catmull_clark && wants_other_alpha(*handle->system)) {
-            scheme.alpha = auto_alpha;
-            make();
-            context->write_log(LCL_LOG_INFO, "alpha 0.5, since 0 is singular, indefinite or nearly so on this mesh");
-        }
+        handle->system = make_system(*context, *mesh, options_or(options, LCL_SCHEME_OPTIONS_INIT, "options"));
         *A = handle.release();
         return LCL_OK;
     });
@@ -122,9 +126,10 @@ int32_t lcl_operator_block_count(lcl_operator A) { return A ? static_cast<int32_
 
 lcl_status lcl_operator_get_scheme(lcl_operator A, lcl_scheme_options* options) {
     return guarded([&] {
-        const SchemeOptions& scheme = required(A, "A")->system->scheme;
+        const LimitSystem& system = *required(A, "A")->system;
+        const SchemeOptions& scheme = system.scheme;
         lcl_scheme_options out = LCL_SCHEME_OPTIONS_INIT;
-        out.scheme = static_cast<lcl_scheme>(static_cast<int>(scheme.scheme) + 1);
+        if (system.origin == Origin::scheme) out.scheme = static_cast<lcl_scheme>(static_cast<int>(scheme.scheme) + 1);
         out.mask = scheme.mask == DooSabinMask::classic ? LCL_MASK_CLASSIC : LCL_MASK_CATMULL;
         out.alpha = scheme.alpha;
         out.lambda = scheme.lambda;

@@ -18,14 +18,6 @@ std::vector<VertexProperty> refined_properties(const std::vector<VertexProperty>
     return out;
 }
 
-/// Integer types keep their kind of number.
-void round_integers(std::vector<VertexProperty>& properties) {
-    for (VertexProperty& property : properties) {
-        if (property.type.rfind("float", 0) == 0 || property.type.rfind("double", 0) == 0) continue;
-        for (double& value : property.values) value = std::round(value);
-    }
-}
-
 void note_dropped(lcl_mesh_s& out, const lcl_mesh_s& mesh) {
     std::vector<std::string>& warnings = out.notes[LCL_NOTE_WARNING];
     if (!mesh.file.uvs.corner_indices.empty()) warnings.push_back("texture coordinates are not refined and were dropped");
@@ -38,6 +30,29 @@ void note_dropped(lcl_mesh_s& out, const lcl_mesh_s& mesh) {
 
 }  // namespace
 
+std::unique_ptr<lcl_mesh_s> lcl::make_refined_mesh(const lcl_mesh_s& mesh, Refinement&& refined, int levels) {
+    auto out = std::make_unique<lcl_mesh_s>();
+    out->file.mesh = std::move(refined.mesh);
+    out->file.ply_encoding = mesh.file.ply_encoding;
+    out->file.ply_position_type = mesh.file.ply_position_type;
+    out->boundary = static_cast<lcl_boundary>(static_cast<int>(refined.features.boundary) + 1);
+    out->feature_options = std::move(refined.features);
+    if (levels > 0) {
+        note_dropped(*out, mesh);
+    } else {
+        out->file.uvs = mesh.file.uvs;
+        out->file.lines = mesh.file.lines;
+    }
+    return out;
+}
+
+void lcl::round_integers(std::vector<VertexProperty>& properties) {
+    for (VertexProperty& property : properties) {
+        if (property.type.rfind("float", 0) == 0 || property.type.rfind("double", 0) == 0) continue;
+        for (double& value : property.values) value = std::round(value);
+    }
+}
+
 extern "C" {
 
 lcl_status lcl_mesh_refine(lcl_mesh mesh, const lcl_scheme_options* scheme, const lcl_refine_options* options, lcl_mesh* refined) {
@@ -49,11 +64,10 @@ lcl_status lcl_mesh_refine(lcl_mesh mesh, const lcl_scheme_options* scheme, cons
         SchemeOptions rules = scheme_options(*mesh, options_or(scheme, LCL_SCHEME_OPTIONS_INIT, "scheme"));
         const Objection objection = scheme_objection(mesh->topology(), rules);
         if (!objection.message.empty()) throw BadInput(objection.message, {objection.vertices, objection.faces});
-        FeatureOptions features = mesh->feature_options;
-        features.boundary = mesh->boundary_rule();
-        mesh->features();  // refuses pairs that are no edges
-        auto out = std::make_unique<lcl_mesh_s>();
-        Refinement last = refine(mesh->file.mesh, features, rules, levels, &out->locations);
+        FeatureOptions features = mesh->named_features();
+        std::vector<SurfaceLocation> locations;
+        auto out = make_refined_mesh(*mesh, refine(mesh->file.mesh, features, rules, levels, &locations), levels);
+        out->locations = std::move(locations);
         out->file.properties = mesh->file.properties;
         if (!out->file.properties.empty()) {
             PolygonMesh polygons = mesh->file.mesh;
@@ -66,12 +80,6 @@ lcl_status lcl_mesh_refine(lcl_mesh mesh, const lcl_scheme_options* scheme, cons
             }
             round_integers(out->file.properties);
         }
-        out->file.mesh = std::move(last.mesh);
-        out->file.ply_encoding = mesh->file.ply_encoding;
-        out->file.ply_position_type = mesh->file.ply_position_type;
-        out->feature_options = last.features;
-        out->boundary = static_cast<lcl_boundary>(static_cast<int>(last.features.boundary) + 1);
-        if (levels > 0) note_dropped(*out, *mesh);
         *refined = out.release();
         return LCL_OK;
     });

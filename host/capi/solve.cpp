@@ -10,6 +10,42 @@ using namespace lcl;
 
 namespace {
 
+void fill(lcl_solve_report* report, const SolveReport& inner) {
+    if (report == nullptr) return;
+    lcl_solve_report out = options_or(report, LCL_SOLVE_REPORT_INIT, "report");
+    out.solver = static_cast<lcl_solver>(inner.solver);
+    out.converged = inner.status == SolveStatus::converged;
+    out.iterations = inner.iterations;
+    out.residual_count = inner.residuals.size();
+    if (out.residuals != nullptr) std::copy_n(inner.residuals.begin(), std::min(out.residual_capacity, inner.residuals.size()), out.residuals);
+    out.lambda_min = inner.lambda_min;
+    out.max_error = inner.max_error;
+    out.surface_error_bound = inner.surface_error_bound;
+    out.channel_error = inner.channel_error;
+    out.seconds_upload = inner.seconds_upload;
+    out.seconds_solve = inner.seconds_solve;
+    out.seconds_download = inner.seconds_download;
+    out.vertex_count = copy_first(out.vertices, inner.vertices);
+    copy_text(out.message, inner.message);
+    out.changed_rows = inner.changed_rows;
+    give(report, out, "report");
+}
+
+}  // namespace
+
+lcl_status lcl::conclude(const SolveReport& inner, const lcl_solve_options& options, lcl_solve_report* report) {
+    fill(report, inner);
+    if (inner.status == SolveStatus::converged || (inner.status == SolveStatus::not_converged && options.exact_sweeps > 0)) return LCL_OK;
+    last_error() = {inner.message, {inner.vertices, {}}};
+    switch (inner.status) {
+        case SolveStatus::singular: return LCL_ERROR_SINGULAR;
+        case SolveStatus::indefinite: return LCL_ERROR_INDEFINITE;
+        default: return LCL_ERROR_NOT_CONVERGED;
+    }
+}
+
+namespace {
+
 constexpr double isolated_range = 1e37;  // as in to_plan_order: isolated vertices may be anywhere
 
 SolveOptions inner_options(const lcl_solve_options& given) {
@@ -35,38 +71,6 @@ SolveOptions inner_options(const lcl_solve_options& given) {
             return given.progress(given.progress_user, iteration, residual, target) != 0;
         };
     return options;
-}
-
-void fill(lcl_solve_report* report, const SolveReport& inner) {
-    if (report == nullptr) return;
-    lcl_solve_report out = options_or(report, LCL_SOLVE_REPORT_INIT, "report");
-    out.solver = static_cast<lcl_solver>(inner.solver);
-    out.converged = inner.status == SolveStatus::converged;
-    out.iterations = inner.iterations;
-    out.residual_count = inner.residuals.size();
-    if (out.residuals != nullptr) std::copy_n(inner.residuals.begin(), std::min(out.residual_capacity, inner.residuals.size()), out.residuals);
-    out.lambda_min = inner.lambda_min;
-    out.max_error = inner.max_error;
-    out.surface_error_bound = inner.surface_error_bound;
-    out.channel_error = inner.channel_error;
-    out.seconds_upload = inner.seconds_upload;
-    out.seconds_solve = inner.seconds_solve;
-    out.seconds_download = inner.seconds_download;
-    out.vertex_count = copy_first(out.vertices, inner.vertices);
-    copy_text(out.message, inner.message);
-    out.changed_rows = inner.changed_rows;
-    give(report, out, "report");
-}
-
-lcl_status conclude(const SolveReport& inner, const lcl_solve_options& options, lcl_solve_report* report) {
-    fill(report, inner);
-    if (inner.status == SolveStatus::converged || (inner.status == SolveStatus::not_converged && options.exact_sweeps > 0)) return LCL_OK;
-    last_error() = {inner.message, {inner.vertices, {}}};
-    switch (inner.status) {
-        case SolveStatus::singular: return LCL_ERROR_SINGULAR;
-        case SolveStatus::indefinite: return LCL_ERROR_INDEFINITE;
-        default: return LCL_ERROR_NOT_CONVERGED;
-    }
 }
 
 lcl_status interpolate(lcl_operator A, const double* M, std::size_t stride, int32_t channels, const lcl_solve_options& given, double* P, std::size_t P_stride,

@@ -16,7 +16,12 @@ std::vector<std::string> all_channels(lcl_mesh mesh);
 
 /// vertex_count x (3 + channels): x, y, z, then the properties.
 std::vector<double> gather_values(lcl_mesh mesh, const std::vector<std::string>& channels);
-/// The way back.
-void scatter_values(lcl_mesh mesh, const std::vector<std::string>& channels, const std::vector<double>& values);
+/// The way back. `values`: vertex_count x (3 + channels).
+void scatter_values(lcl_mesh mesh, const std::vector<std::string>& channels, const double* values);
+
+/// For filters, whose results are colours again: one number a channel, 255 or 65535 for colours in whole numbers, 0 for all other data.
+std::vector<double> colour_limits(lcl_mesh mesh, const std::vector<std::string>& channels);
+/// Rounds colours in whole numbers and keeps them between 0 and their limits, so that they keep their type.
+void round_colours(const std::vector<double>& limits, std::size_t vertex_count, double* values);
 
 }  // namespace lcl::cli

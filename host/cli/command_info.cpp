@@ -2,6 +2,7 @@
 #include "host/cli/channels.h"
 #include "host/cli/commands.h"
 #include "host/cli/failure.h"
+#include "host/cli/option_names.h"
 #include "host/cli/scheme_choice.h"
 
 namespace lcl::cli {

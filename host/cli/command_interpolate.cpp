@@ -7,34 +7,13 @@
 #include "host/cli/commands.h"
 #include "host/cli/failure.h"
 #include "host/cli/interrupt.h"
+#include "host/cli/option_names.h"
 #include "host/cli/scheme_choice.h"
+#include "host/cli/solve_step.h"
 
 namespace lcl::cli {
 
 namespace {
-
-constexpr int most_residuals = 1 << 22;  // a longer history is cut: 32 MiB, whatever --max-iter says
-
-/// What the progress line needs between two calls.
-struct SolveProgress {
-    Progress* progress;
-    int sweeps;          ///< asked for, 0: until the tolerance
-    double first = 0.0;  ///< residual of the first call
-};
-
-double fraction_done(SolveProgress& state, std::int32_t iteration, double residual, double target) {
-    if (state.sweeps > 0) return static_cast<double>(iteration) / state.sweeps;
-    if (state.first <= 0.0) state.first = residual;
-    if (!(residual > 0.0) || !(target > 0.0) || state.first <= target) return -1.0;
-    return std::clamp(std::log(state.first / residual) / std::log(state.first / target), 0.0, 1.0);
-}
-
-std::int32_t on_progress(void* user, std::int32_t iteration, double residual, double target) {
-    SolveProgress& state = *static_cast<SolveProgress*>(user);
-    const double fraction = fraction_done(state, iteration, residual, target);
-    state.progress->update(fraction, "sweep " + std::to_string(iteration) + ", residual " + short_number(residual) + " of " + short_number(target));
-    return interrupted() ? 0 : 1;
-}
 
 void note_solve_parameters(Job& job) {
     const Options& options = job.options;
@@ -54,19 +33,9 @@ lcl_solve_options solve_options(const Options& options, SolveProgress& state) {
     solve.exact_sweeps = options.sweeps;
     solve.keep_going = options.keep_going || options.sweeps > 0;  // exactly so many sweeps, whatever they give
     solve.certify = !options.report.empty();                      // the bound may cost some ten short solves: for those who read it
-    solve.progress = on_progress;
+    solve.progress = on_solve_progress;
     solve.progress_user = &state;
     return solve;
-}
-
-bool is_result(lcl_status status) { return status == LCL_ERROR_SINGULAR || status == LCL_ERROR_INDEFINITE || status == LCL_ERROR_NOT_CONVERGED; }
-
-/// The sentence and the places are in the solve's report too; the last error has them where that is empty.
-Failure failure_of_result(lcl_status status, const lcl_solve_report& report) {
-    Failure failure = failure_of(status);
-    if (report.message[0] != '\0') failure.message = one_line(report.message);
-    if (report.vertex_count > 0) failure.vertices.assign(report.vertices, report.vertices + report.vertex_count);
-    return failure;
 }
 
 /// The library builds kernels at their first use, somewhere in the upload or the solve: `compiled` seconds, taken off both in proportion.
@@ -79,20 +48,12 @@ void note_seconds(Seconds& seconds, const lcl_solve_report& report, double compi
     add_seconds(seconds.download, report.seconds_download);
 }
 
-void note_solve(Job& job, const lcl_solve_report& report, std::vector<double> residuals) {
-    residuals.resize(std::min(residuals.size(), report.residual_count));
-    job.report.solve.emplace();
-    job.report.solve->report = report;
-    job.report.solve->report.residuals = nullptr;
-    job.report.solve->residuals = std::move(residuals);
-}
-
 /// Replaces the points of the mesh, and the channels, by control points.
 lcl_status interpolate(lcl_operator A, lcl_mesh mesh, const std::vector<std::string>& channels, const lcl_solve_options& options, lcl_solve_report& report) {
     if (channels.empty()) return lcl_interpolate_mesh(A, mesh, &options, &report);
     std::vector<double> values = gather_values(mesh, channels);
     const lcl_status status = lcl_interpolate(A, values.data(), 0, static_cast<std::int32_t>(3 + channels.size()), &options, values.data(), 0, &report);
-    if (status == LCL_OK || is_result(status)) scatter_values(mesh, channels, values);
+    if (status == LCL_OK || is_result(status)) scatter_values(mesh, channels, values.data());
     return status;
 }
 
@@ -100,7 +61,7 @@ lcl_status interpolate(lcl_operator A, lcl_mesh mesh, const std::vector<std::str
 lcl_status solve(Job& job, lcl_context context, lcl_operator A, lcl_mesh mesh, const std::vector<std::string>& channels) {
     SolveProgress state{&job.terminal.progress(), job.options.sweeps};
     const lcl_solve_options options = solve_options(job.options, state);
-    std::vector<double> residuals(static_cast<std::size_t>(std::min(std::max(options.max_iterations, options.exact_sweeps), most_residuals)) + 1);
+    std::vector<double> residuals = residual_space(std::max(options.max_iterations, options.exact_sweeps));
     lcl_solve_report report = LCL_SOLVE_REPORT_INIT;
     report.residuals = residuals.data();
     report.residual_capacity = residuals.size();

@@ -3,6 +3,7 @@
 #include "host/cli/commands.h"
 #include "host/cli/failure.h"
 #include "host/cli/limit_step.h"
+#include "host/cli/option_names.h"
 #include "host/cli/scheme_choice.h"
 
 namespace lcl::cli {

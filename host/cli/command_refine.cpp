@@ -1,28 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <charconv>
+#include <cmath>
 
 #include "host/cli/channels.h"
 #include "host/cli/commands.h"
 #include "host/cli/csv.h"
 #include "host/cli/failure.h"
 #include "host/cli/limit_step.h"
+#include "host/cli/option_names.h"
 #include "host/cli/scheme_choice.h"
 
 namespace lcl::cli {
 
 namespace {
-
-/// --alpha auto asks the operator of IN, on a device.
-void resolve_alpha(Job& job, Context& context, lcl_mesh mesh, lcl_scheme_options& scheme) {
-    if (!scheme.alpha_auto) return;
-    context = open_device(job);
-    const Operator A = make_operator(job, context.get(), mesh, scheme);
-    lcl_scheme_options in_use = LCL_SCHEME_OPTIONS_INIT;
-    check(lcl_operator_get_scheme(A.get(), &in_use));
-    scheme.alpha = in_use.alpha;
-    scheme.alpha_auto = 0;
-    note_scheme(job, scheme);
-}
 
 Mesh refined_mesh(Job& job, lcl_mesh mesh, const lcl_scheme_options& scheme) {
     lcl_refine_options options = LCL_REFINE_OPTIONS_INIT;
@@ -43,20 +32,10 @@ lcl_scheme_options scheme_of_refined(const Job& job, const lcl_scheme_options& s
     return options;
 }
 
-void append(std::string& text, double value) {
-    char digits[32];
-    const auto [end, error] = std::to_chars(digits, digits + sizeof digits, value);
-    text.append(digits, error == std::errc() ? static_cast<std::size_t>(end - digits) : 0);
-}
-
 /// An isolated vertex lies on no face: its face and corner are -1, its parameters do not exist.
 void append_location(std::string& text, std::size_t vertex, std::int32_t face, std::int32_t corner, const double* uv) {
     text += std::to_string(vertex) + "," + std::to_string(face) + "," + std::to_string(face < 0 ? -1 : corner);
-    for (int axis = 0; axis < 2; ++axis) {
-        text += ",";
-        if (face < 0) text += "nan";
-        else append(text, uv[axis]);
-    }
+    for (int axis = 0; axis < 2; ++axis) append_cell(text, face < 0 ? NAN : uv[axis]);
     text += "\n";
 }
 

@@ -12,5 +12,11 @@ void run_info(Job& job);
 void run_interpolate(Job& job);
 void run_limit(Job& job);
 void run_refine(Job& job);
+void run_expand(Job& job);
+void run_spectrum(Job& job);
+void run_denoise(Job& job);
+void run_sharpen(Job& job);
+void run_morph(Job& job);
+void run_texture(Job& job);
 
 }  // namespace lcl::cli

@@ -3,6 +3,7 @@
 
 #include <cerrno>
 #include <charconv>
+#include <cmath>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
@@ -142,6 +143,21 @@ PairList read_pair_list(const std::string& path, std::int32_t vertex_count) {
         list.lines.push_back(number);
     });
     return list;
+}
+
+void append_number(std::string& text, double value) {
+    if (std::isnan(value)) {
+        text += "nan";
+        return;
+    }
+    char digits[32];
+    const auto [end, error] = std::to_chars(digits, digits + sizeof digits, value);
+    text.append(digits, error == std::errc() ? static_cast<std::size_t>(end - digits) : 0);
+}
+
+void append_cell(std::string& text, double value) {
+    text += ",";
+    append_number(text, value);
 }
 
 OutputFile::OutputFile(const std::string& path) : path_(path), temporary_(path + "." + std::to_string(getpid()) + ".part") {

@@ -39,6 +39,11 @@ PairList read_pair_list(const std::string& path, std::int32_t vertex_count);
 /// "FILE:LINE: text", exit code 3.
 [[noreturn]] void fail_at(const std::string& path, int line, const std::string& text);
 
+/// The shortest text that reads back the same number, `nan` where there is none.
+void append_number(std::string& text, double value);
+/// The same behind a comma.
+void append_cell(std::string& text, double value);
+
 /// A text file that appears completely or not at all: a temporary file in the same folder, then rename. Failures have exit code 1.
 class OutputFile {
 public:

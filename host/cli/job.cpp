@@ -11,11 +11,14 @@
 #include "host/cli/failure.h"
 #include "host/cli/features.h"
 #include "host/cli/interrupt.h"
+#include "host/cli/option_names.h"
 #include "host/cli/scheme_choice.h"
 
 namespace lcl::cli {
 
 namespace {
+
+std::string of_file(const std::string& name, const std::string& message) { return message.find(name) == std::string::npos ? name + ": " + message : message; }
 
 void log_to_terminal(void* user, std::int32_t level, const char* message) {
     Job& job = *static_cast<Job*>(user);
@@ -45,13 +48,14 @@ std::vector<char> standard_input() {
     }
 }
 
-Mesh read_mesh(const Options& options) {
+Mesh read_mesh(Job& job, const std::string& path) {
+    const Phase phase(job, &Seconds::read, "reading " + shown_name(path));
     lcl_mesh mesh = nullptr;
-    if (options.input != "-") {
-        check(lcl_mesh_read(options.input.c_str(), LCL_FORMAT_BY_ENDING, &mesh));
+    if (path != "-") {
+        check(lcl_mesh_read(path.c_str(), LCL_FORMAT_BY_ENDING, &mesh));
     } else {
         const std::vector<char> bytes = standard_input();
-        check(lcl_mesh_read_memory(bytes.data(), bytes.size(), options.format, "standard input", &mesh));
+        check(lcl_mesh_read_memory(bytes.data(), bytes.size(), job.options.format, "standard input", &mesh));
     }
     return Mesh(mesh);
 }
@@ -107,17 +111,16 @@ Phase::~Phase() {
     add_seconds(job_.report.seconds.compile, compiled);
 }
 
-void check_of_input(const Job& job, lcl_status status) {
+void check_of_file(const std::string& name, lcl_status status) {
     if (status == LCL_OK) return;
     Failure failure = failure_of(status);
-    failure.message = of_input(job, failure.message);
+    failure.message = of_file(name, failure.message);
     throw failure;
 }
 
-std::string of_input(const Job& job, const std::string& message) {
-    const std::string name = shown_input(job.options);
-    return message.find(name) == std::string::npos ? name + ": " + message : message;
-}
+void check_of_input(const Job& job, lcl_status status) { check_of_file(shown_input(job.options), status); }
+
+std::string of_input(const Job& job, const std::string& message) { return of_file(shown_input(job.options), message); }
 
 void add_seconds(double& phase, double seconds) { phase += std::max(seconds, 0.0); }
 
@@ -133,11 +136,7 @@ void warn_of_notes(Job& job, lcl_mesh mesh) {
 }
 
 Mesh read_input(Job& job) {
-    Mesh mesh;
-    {
-        const Phase phase(job, &Seconds::read, "reading " + shown_input(job.options));
-        mesh = read_mesh(job.options);
-    }
+    Mesh mesh = read_mesh(job, job.options.input);
     {
         const Phase phase(job, &Seconds::topology, "checking the mesh");
         add_features(job, mesh.get());
@@ -155,6 +154,17 @@ Mesh read_sound_input(Job& job) {
     if (lcl_mesh_face_count(mesh.get()) == 0) fail(exit_bad_input, shown_input(job.options) + ": the mesh has no faces: a surface needs at least one");
     check_of_input(job, lcl_mesh_validate(mesh.get()));
     check_interrupt();
+    return mesh;
+}
+
+Mesh read_target(Job& job) {
+    Mesh mesh = read_mesh(job, job.options.target);
+    const std::string name = shown_name(job.options.target);
+    job.terminal.say("to", name + ": " + counted(lcl_mesh_vertex_count(mesh.get()), "vertex", "vertices") + ", " +
+                               counted(lcl_mesh_face_count(mesh.get()), "face", "faces"));
+    warn_of_notes(job, mesh.get());
+    const Phase phase(job, &Seconds::topology, "checking " + name);
+    check_of_file(name, lcl_mesh_validate(mesh.get()));
     return mesh;
 }
 
@@ -233,7 +243,9 @@ void write_output(Job& job, lcl_mesh mesh) {
                      shown + ": " + counted(lcl_mesh_vertex_count(mesh), "vertex", "vertices") + ", " + counted(lcl_mesh_face_count(mesh), "face", "faces"));
 }
 
-std::string shown_input(const Options& options) { return options.input == "-" ? "standard input" : options.input; }
+std::string shown_name(const std::string& path) { return path == "-" ? "standard input" : path; }
+
+std::string shown_input(const Options& options) { return shown_name(options.input); }
 
 void say_seconds(Job& job) {
     const Seconds& seconds = job.report.seconds;

@@ -50,7 +50,9 @@ private:
 /// Adds to a phase of the report.
 void add_seconds(double& phase, double seconds);
 
-/// check() of a call that looks at the mesh of IN: its name stands before the sentence, if it is not in it.
+/// check() of a call that looks at the mesh of a file: its name stands before the sentence, if it is not in it.
+void check_of_file(const std::string& name, lcl_status status);
+/// The same of IN.
 void check_of_input(const Job& job, lcl_status status);
 std::string of_input(const Job& job, const std::string& message);
 
@@ -63,6 +65,8 @@ void warn_of_notes(Job& job, lcl_mesh mesh);
 Mesh read_input(Job& job);
 /// The same, refused (exit code 3) where it has no faces or is not sound.
 Mesh read_sound_input(Job& job);
+/// TO of a morph, refused where it is not sound. Its sharp features are not looked at.
+Mesh read_target(Job& job);
 Histogram histogram_of(lcl_mesh mesh, lcl_histogram which);
 
 /// Refuses what OUT's format cannot hold before anything is computed.
@@ -87,7 +91,8 @@ Operator make_operator(Job& job, lcl_context context, lcl_mesh mesh, const lcl_s
 /// Writes OUT: complete or not at all.
 void write_output(Job& job, lcl_mesh mesh);
 
-/// Name of a file for people: standard input or output have no name.
+/// Name of a file that is read, for people: standard input has no name.
+std::string shown_name(const std::string& path);
 std::string shown_input(const Options& options);
 /// The line of the seconds by phase.
 void say_seconds(Job& job);

@@ -12,7 +12,7 @@ void move_to_limit(Job& job, lcl_context context, lcl_operator A, lcl_mesh mesh,
         const Phase phase(job, &Seconds::solve, "taking limit points", context);
         check(lcl_limit_points(A, values.data(), 0, static_cast<std::int32_t>(3 + channels.size()), job.options.precision, values.data(), 0));
     }
-    scatter_values(mesh, channels, values);
+    scatter_values(mesh, channels, values.data());
 }
 
 }  // namespace lcl::cli

@@ -4,48 +4,30 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <iostream>
+#include <limits>
 #include <set>
+#include <stdexcept>
 #include <utility>
 #include <vector>
 
 #include <CLI/CLI.hpp>
 
 #include "host/cli/failure.h"
+#include "host/cli/option_names.h"
+#include "host/cli/option_rules.h"
+#include "host/cli/option_values.h"
 
 namespace lcl::cli {
 
 namespace {
 
-template <typename Value>
-using Names = std::vector<std::pair<const char*, Value>>;
-
-const Names<lcl_scheme> scheme_names = {{"catmull-clark", LCL_SCHEME_CATMULL_CLARK}, {"loop", LCL_SCHEME_LOOP}, {"doo-sabin", LCL_SCHEME_DOO_SABIN}};
-const Names<lcl_mask> mask_names = {{"catmull", LCL_MASK_CATMULL}, {"classic", LCL_MASK_CLASSIC}};
-const Names<lcl_boundary> boundary_names = {
-    {"edge-and-corner", LCL_BOUNDARY_EDGE_AND_CORNER}, {"edge-only", LCL_BOUNDARY_EDGE_ONLY}, {"fixed", LCL_BOUNDARY_FIXED}};
-const Names<lcl_precision> precision_names = {{"single", LCL_PRECISION_SINGLE}, {"mixed", LCL_PRECISION_MIXED}, {"double", LCL_PRECISION_DOUBLE}};
-const Names<lcl_solver> solver_names = {{"auto", LCL_SOLVER_AUTO},           {"pia", LCL_SOLVER_PIA}, {"wpia", LCL_SOLVER_WPIA},
-                                        {"jacobi", LCL_SOLVER_JACOBI},       {"gs", LCL_SOLVER_GS},   {"gs-coloured", LCL_SOLVER_GS_COLOURED},
-                                        {"chebyshev", LCL_SOLVER_CHEBYSHEV}, {"cg", LCL_SOLVER_CG}};
-const Names<lcl_format> format_names = {
-    {"obj", LCL_FORMAT_OBJ}, {"off", LCL_FORMAT_OFF}, {"ply", LCL_FORMAT_PLY}, {"stl", LCL_FORMAT_STL}, {"om", LCL_FORMAT_OM}};
-
-const std::array<const char*, 9> later_commands = {"evaluate", "closest", "expand", "spectrum", "denoise", "sharpen", "morph", "texture", "surface"};
+const std::array<const char*, 3> later_commands = {"evaluate", "closest", "surface"};
 
 constexpr const char* scheme_group = "Scheme and sharp features";
 constexpr const char* solve_group = "Values and solving";
 constexpr const char* run_group = "Device, report, text";
-
-template <typename Value>
-const char* name_of(const Names<Value>& names, Value value) {
-    for (const auto& [name, of] : names) {
-        if (of == value) return name;
-    }
-    return "default";
-}
 
 /// An option whose value is one of a list of names.
 template <typename Value>
@@ -63,12 +45,17 @@ CLI::Option* add_choice(CLI::App& app, const std::string& flag, Value& value, co
     return app.add_option_function<std::string>(flag, set, text)->type_name(list);
 }
 
-/// The whole text as a number; nothing where it is none.
-std::optional<double> to_number(const std::string& text) {
-    double value = 0.0;
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-    if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
-    return value;
+/// An option whose text `parse` makes a value of; std::invalid_argument says why not.
+template <typename Value, typename Parse>
+CLI::Option* add_parsed(CLI::App& app, const std::string& flag, Value& value, Parse parse, const std::string& text) {
+    const auto set = [&value, parse, flag](const std::string& given) {
+        try {
+            value = parse(given);
+        } catch (const std::invalid_argument& error) {
+            throw CLI::ValidationError(flag, error.what());
+        }
+    };
+    return app.add_option_function<std::string>(flag, set, text);
 }
 
 bool is_fraction(double value) { return value >= 0.0 && value <= 1.0; }
@@ -104,20 +91,23 @@ CLI::Validator angle() {
     return CLI::Validator(test, "");
 }
 
-CLI::Validator count_from(int least) {
-    const auto test = [least](const std::string& text) {
-        int value = 0;
-        const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-        const bool good = error == std::errc() && end == text.data() + text.size() && value >= least && value <= 1000000000;
-        return good ? std::string() : "'" + text + "' is not a whole number from " + std::to_string(least) + " to 1000000000";
+CLI::Validator fraction() {
+    const auto test = [](const std::string& text) {
+        const std::optional<double> value = to_number(text);
+        return value && is_fraction(*value) ? std::string() : "'" + text + "' is not a number from 0 to 1";
     };
     return CLI::Validator(test, "");
 }
 
-/// What is wrong with a way to name a file that is written beside OUT.
-void refuse_standard_output(const std::string& flag, const std::string& path) {
-    if (path == "-") fail(exit_usage, flag + " needs a file's name: standard output is for -o and --report");
+CLI::Validator count_within(int least, int most) {
+    const auto test = [least, most](const std::string& text) {
+        const bool good = to_count(text, least, most).has_value();
+        return good ? std::string() : "'" + text + "' is not a whole number from " + std::to_string(least) + " to " + std::to_string(most);
+    };
+    return CLI::Validator(test, "");
 }
+
+CLI::Validator count_from(int least) { return count_within(least, 1000000000); }
 
 class Parser {
 public:
@@ -146,16 +136,19 @@ private:
     void add_interpolate();
     void add_limit();
     void add_refine();
+    void add_expand();
+    void add_spectrum();
+    void add_denoise();
+    void add_sharpen();
+    void add_morph();
+    void add_texture();
     CLI::App* add_command(const char* name, const char* text, bool reads_mesh, bool writes_mesh);
     void add_later(CLI::App& command, const std::string& flag, bool takes_value);
     std::string common_help(bool reads_mesh) const;
     std::string help_page() const;
     [[noreturn]] void refuse_extras(std::vector<std::string> extras) const;
     void refuse_what_is_not_there() const;
-    void choose_scheme();
-    void check_files() const;
-    void check_command() const;
-    bool given(const char* flag) const { return app_.get_option(flag)->count() > 0; }
+    void note_what_is_given();
 
     Options& options_;
     CLI::App app_;
@@ -247,6 +240,12 @@ void Parser::add_commands() {
     add_interpolate();
     add_limit();
     add_refine();
+    add_expand();
+    add_spectrum();
+    add_denoise();
+    add_sharpen();
+    add_morph();
+    add_texture();
     for (const char* name : later_commands) {
         CLI::App* command = app_.add_subcommand(name)->group("")->prefix_command();
         command->set_help_flag();
@@ -275,6 +274,76 @@ void Parser::add_refine() {
     command->add_option("--map", options_.map_file, "CSV of where each new vertex lies: vertex,face,corner,u,v")->type_name("FILE");
 }
 
+void Parser::add_expand() {
+    CLI::App* command = add_command("expand", "Mesh expansion: a term, a band, a partial sum, or an equaliser", true, true);
+    add_choice(*command, "--series", options_.series, series_names, "Default representation: terms that sum to IN; interpolation: to its control mesh");
+    command->add_option("--term", options_.term, "Term I alone")->check(count_within(0, most_terms))->type_name("I");
+    command->add_option("--sum", options_.sum, "Terms 0 to M")->check(count_within(0, most_terms))->type_name("M");
+    const auto band = [](const std::string& text) { return parse_band(text, 0); };
+    add_parsed(*command, "--band", options_.band, band, "Terms I to J")->type_name("I:J");
+    add_parsed(*command, "--equaliser", options_.equaliser, parse_equaliser,
+               "Weights of the terms 0 to m, and of what they leave (default 1; representation series only)")
+        ->type_name("w0,..,wm[:r]");
+}
+
+void Parser::add_spectrum() {
+    CLI::App* command = add_command("spectrum", "Energy of every term of the expansion", true, false);
+    command->add_option("-o,--output", options_.output, "Table .csv or chart .svg (default: the CSV on standard output)")->type_name("OUT");
+    command->add_option("--terms", options_.terms, "Terms 0 to N - 1 (default 16)")->check(count_within(1, most_terms))->type_name("N");
+}
+
+void Parser::add_denoise() {
+    CLI::App* command = add_command("denoise", "Noise filtered away: D^k A with D = E - (E - A)^(m + 1)", true, true);
+    command->add_option("--m", options_.m, "Terms 0 to m pass (default 2); the fewer, the smoother")->check(count_within(0, most_terms))->type_name("M");
+    command->add_option("--k", options_.k, "Times (default 3)")->check(count_within(0, most_terms))->type_name("K");
+    command->add_flag("--plain", options_.plain, "D^k instead of D^k A");
+    command->add_option("--strength", options_.strength, "0 (hardly) to 1 (most) instead of m and k; 0.5: their defaults")->check(fraction())->type_name("S");
+    command->add_flag("--keep-volume", options_.keep_volume, "Closed meshes: moved along the normals until they enclose as much as before");
+    command->add_option("--pin", options_.pin_file, "Vertices that stay where they are, one a line")->type_name("FILE");
+    add_choice(*command, "--operator", options_.feature_operator, operator_names, "Default limit: A of the scheme; features: one that keeps sharp edges");
+}
+
+void Parser::add_sharpen() {
+    CLI::App* command = add_command("sharpen", "Detail raised: terms of higher frequency added", true, true);
+    const auto band = [](const std::string& text) { return parse_band(text, 1); };
+    add_parsed(*command, "--band", options_.band, band, "Terms m to n of the interpolation series are added (default 1:3)")->type_name("m:n");
+    command->add_option("--k", options_.sharpen_steps, "Times (default 1)")->check(count_within(1, most_terms))->type_name("K");
+}
+
+void Parser::add_morph() {
+    CLI::App* command = app_.add_subcommand("morph", "Frames from one mesh to another of the same faces")->group("Commands");
+    command->add_option("FROM", options_.input, "Mesh where it starts; `-`: standard input (needs --format)")->type_name("")->required();
+    command->add_option("TO", options_.target, "Mesh where it ends, with FROM's faces")->type_name("")->required();
+    command->add_option("-o,--output", options_.output, "Names of the frames, with one %d or %03d for the number")->type_name("'OUT_%03d.obj'")->required();
+    command->add_option("--frames", options_.frames, "Steps (default 10): N + 1 files, FROM is frame 0")->check(count_within(1, 1000000))->type_name("N");
+    add_parsed(*command, "--m", options_.morph_m, parse_counts, "m of the filter D of each step, the last repeated (default 2)")->type_name("M,..");
+    add_parsed(*command, "--rho", options_.rho, parse_ratios, "Ratio of each step, the last repeated (default 0.5): the smaller, the faster")
+        ->type_name("R,..");
+    command->add_flag_callback(
+        "--even", [this] { options_.path = LCL_MORPH_EVEN; }, "Even steps that end on TO itself, instead of --rho");
+    command->add_flag_callback(
+        "--linear", [this] { options_.path = LCL_MORPH_LINEAR; }, "Straight lines, for comparison");
+    command->footer([this] { return common_help(true); });
+}
+
+void Parser::add_texture() {
+    CLI::App* command = add_command("texture", "Procedural texture as colours of the vertices of a refined mesh", true, true);
+    command->add_option("--octaves", options_.octaves, "Octaves of noise (default 4)")->check(count_within(1, 20))->type_name("N");
+    command->add_option("--frequency", options_.frequency, "Noise cells across the bounding box's diagonal in the first octave (default 8)")
+        ->check(positive_number())
+        ->type_name("F");
+    command->add_option("--levels", options_.texture_levels, "Refinements of IN, from octaves - 1 (the default) on")->check(count_from(0))->type_name("K");
+    add_parsed(*command, "--colors", options_.colours, parse_colours, "Colours that the curve of colours passes through (default: marble)")
+        ->type_name("'#rrggbb,..'");
+    const auto seed = [](const std::string& text) {
+        const std::optional<std::int64_t> value = to_count(text, 0, std::numeric_limits<std::uint32_t>::max());
+        if (!value) throw std::invalid_argument("'" + text + "' is not a whole number from 0 to 4294967295");
+        return static_cast<std::uint32_t>(*value);
+    };
+    add_parsed(*command, "--seed", options_.seed, seed, "Another texture for every number (default 0)")->type_name("S");
+    command->add_flag("--on-mesh", options_.on_mesh, "OUT is IN itself with the colours at its vertices");
+}
+
 /// An option that is part of the command's contract but comes with a later version: known, so that asking for it gives a sentence of its own.
 void Parser::add_later(CLI::App& command, const std::string& flag, bool takes_value) {
     CLI::Option* option = takes_value ? command.add_option_function<std::string>(flag, [](const std::string&) {}) : command.add_flag(flag);
@@ -292,6 +361,19 @@ std::string Parser::common_help(bool reads_mesh) const {
     return text;
 }
 
+/// Also refuses options of meshes with a command that reads none.
+void Parser::note_what_is_given() {
+    const bool reads_mesh = options_.command != "devices" && options_.command != "selftest";
+    for (CLI::App* app : {&app_, app_.get_subcommands().front()}) {
+        for (const CLI::Option* option : app->get_options()) {
+            if (option->count() == 0) continue;
+            options_.given.insert(option->get_name());
+            const bool of_meshes = option->get_group() == scheme_group || option->get_group() == solve_group;
+            if (of_meshes && !reads_mesh) fail(exit_usage, "'" + options_.command + "' reads no mesh and takes no " + option->get_name());
+        }
+    }
+}
+
 void Parser::refuse_what_is_not_there() const {
     for (const char* name : later_commands) {
         if (options_.command == name)
@@ -301,49 +383,6 @@ void Parser::refuse_what_is_not_there() const {
         if (option->count() > 0)
             fail(exit_usage, "this version does not have " + options_.command + " --" + option->get_lnames().front() + " yet; leave the option out");
     }
-}
-
-void Parser::choose_scheme() {
-    for (const char* flag : {"--alpha", "--lambda"}) {
-        if (!given(flag)) continue;
-        if (given("--mask")) fail(exit_usage, std::string(flag) + " is of catmull-clark and --mask of doo-sabin: give one of them");
-        if (given("--scheme") && options_.scheme != LCL_SCHEME_CATMULL_CLARK)
-            fail(exit_usage, std::string(flag) + " is of catmull-clark: leave it out, or give --scheme catmull-clark");
-        options_.scheme = LCL_SCHEME_CATMULL_CLARK;
-    }
-    if (!given("--mask")) return;
-    if (given("--scheme") && options_.scheme != LCL_SCHEME_DOO_SABIN) fail(exit_usage, "--mask is of doo-sabin: leave it out, or give --scheme doo-sabin");
-    options_.scheme = LCL_SCHEME_DOO_SABIN;
-}
-
-void Parser::check_files() const {
-    const bool streams = options_.input == "-" || options_.output == "-";
-    if (streams && !given("--format")) fail(exit_usage, "standard input and output have no ending: give --format obj, off, ply, stl or om");
-    if (!streams && given("--format")) fail(exit_usage, "--format is for standard input and output; a file's ending names its format");
-    if (options_.output == "-" && options_.report == "-") fail(exit_usage, "-o - and --report - cannot both have standard output: give one of them a file");
-    for (const std::string& path : {options_.input, options_.output}) {
-        lcl_format format = LCL_FORMAT_BY_ENDING;
-        if (!path.empty() && path != "-" && lcl_format_of_path(path.c_str(), &format) != LCL_OK) fail(exit_usage, lcl_last_error());
-    }
-    refuse_standard_output("--map", options_.map_file);
-    const bool report_is_file = !options_.report.empty() && options_.report != "-";
-    if (report_is_file && (options_.report == options_.output || options_.report == options_.map_file))
-        fail(exit_usage, "the report would replace another output, '" + options_.report + "': give --report another name");
-    if (!options_.map_file.empty() && options_.map_file == options_.output) fail(exit_usage, "--map would replace the mesh: give it another name");
-}
-
-void Parser::check_command() const {
-    if (options_.quiet && options_.verbosity > 0) fail(exit_usage, "--quiet and -v exclude each other: give one of them");
-    if (options_.command == "devices" || options_.command == "selftest") {
-        for (const CLI::Option* option : app_.get_options()) {
-            const bool of_meshes = option->get_group() == scheme_group || option->get_group() == solve_group;
-            if (of_meshes && option->count() > 0) fail(exit_usage, "'" + options_.command + "' reads no mesh and takes no " + option->get_name());
-        }
-        return;
-    }
-    check_files();
-    if (options_.command == "refine" && options_.levels == 0 && !options_.limit)
-        fail(exit_usage, "--levels 0 changes nothing without --limit: add it, or give a level from 1");
 }
 
 /// The page that lists what the command line should have held.
@@ -377,23 +416,13 @@ std::optional<int> Parser::parse(int argc, char** argv) {
     if (commands.empty()) fail(exit_usage, "no command; `limitcl --help` lists them");
     options_.command = commands.front()->get_name();
     refuse_what_is_not_there();
-    choose_scheme();
-    check_command();
+    note_what_is_given();
+    apply_rules(options_);
     return std::nullopt;
 }
 
 }  // namespace
 
 std::optional<int> parse_options(int argc, char** argv, Options& options) { return Parser(options).parse(argc, argv); }
-
-const char* scheme_name(lcl_scheme scheme) { return name_of(scheme_names, scheme); }
-
-const char* mask_name(lcl_mask mask) { return name_of(mask_names, mask); }
-
-const char* boundary_name(lcl_boundary boundary) { return name_of(boundary_names, boundary); }
-
-const char* precision_name(lcl_precision precision) { return name_of(precision_names, precision); }
-
-const char* solver_name(lcl_solver solver) { return name_of(solver_names, solver); }
 
 }  // namespace lcl::cli

@@ -2,15 +2,21 @@
 // The command line as a struct. Only options.cpp sees the parser's library.
 #pragma once
 
+#include <cstdint>
 #include <optional>
+#include <set>
 #include <string>
+#include <vector>
 
 #include <limitcl/limitcl.h>
+
+#include "host/cli/option_values.h"
 
 namespace lcl::cli {
 
 struct Options {
     std::string command;
+    std::set<std::string> given;  ///< names of the options that were given: "--alpha"
 
     // files
     std::string input, output;                 ///< "-": standard streams
@@ -51,17 +57,48 @@ struct Options {
     int levels = 1;
     bool limit = false;
     std::string map_file;
+
+    // expand
+    lcl_series series = LCL_SERIES_REPRESENTATION;
+    int term = 0, sum = 0;  ///< which of these four rules, `given` tells
+    Band band = {1, 3};     ///< sharpen too
+    Equaliser equaliser;
+
+    // spectrum
+    int terms = 16;
+
+    // denoise
+    int m = 2, k = 3;
+    bool plain = false;
+    double strength = 0.5;  ///< rules over m and k where it is given
+    bool keep_volume = false;
+    std::string pin_file;
+    bool feature_operator = false;
+
+    // sharpen
+    int sharpen_steps = 1;
+
+    // morph: `input` is where it starts
+    std::string target;
+    FramePattern frame_pattern;  ///< of `output`
+    int frames = 10;
+    std::vector<int> morph_m = {2};
+    std::vector<double> rho = {0.5};
+    lcl_morph_path path = LCL_MORPH_RECURSION;
+
+    // texture
+    int octaves = 4;
+    double frequency = 8.0;
+    int texture_levels = 0;       ///< as given; 0: octaves - 1
+    std::vector<double> colours;  ///< three numbers a colour; empty: the library's
+    std::uint32_t seed = 0;
+    bool on_mesh = false;
+
+    bool has(const char* option) const { return given.count(option) > 0; }
 };
 
 /// Fills `options` from the arguments. Returns an exit code where the program is done (help, version), nothing where a command is to be run.
 /// Throws Failure with exit code 2 on wrong usage; `options` then holds what was understood (for --color).
 std::optional<int> parse_options(int argc, char** argv, Options& options);
-
-/// Names as the command line has them.
-const char* scheme_name(lcl_scheme scheme);
-const char* mask_name(lcl_mask mask);
-const char* boundary_name(lcl_boundary boundary);
-const char* precision_name(lcl_precision precision);
-const char* solver_name(lcl_solver solver);
 
 }  // namespace lcl::cli

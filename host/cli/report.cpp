@@ -5,7 +5,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "host/cli/options.h"
+#include "host/cli/option_names.h"
 
 namespace lcl::cli {
 
@@ -59,6 +59,19 @@ void add_solve(Json& json, const SolveSummary& solve) {
     json["lambda_min"] = number_or_null(solve.report.lambda_min);
     json["max_error"] = number_or_null(solve.report.max_error);
     json["surface_error_bound"] = number_or_null(solve.report.surface_error_bound);
+}
+
+/// The rows of the CSV.
+Json spectrum_json(const SpectrumSummary& spectrum) {
+    const std::size_t width = spectrum.channels.size();
+    Json rows = Json::array();
+    for (std::size_t term = 0; term * width < spectrum.energies.size(); ++term) {
+        const double* energies = spectrum.energies.data() + term * width;
+        Json row = {{"term", term}, {"energy", number_or_null(position_energy(energies))}};
+        for (std::size_t channel = 0; channel < width; ++channel) row[spectrum.channels[channel]] = number_or_null(energies[channel]);
+        rows.push_back(row);
+    }
+    return rows;
 }
 
 /// "NAME COUNT" as the library notes it.
@@ -128,6 +141,8 @@ Json seconds_json(const Seconds& seconds) {
 
 }  // namespace
 
+double position_energy(const double* energies) { return energies[0] + energies[1] + energies[2]; }
+
 void Report::set_parameter(const std::string& name, Parameter value) {
     for (auto& [known, old] : parameters) {
         if (known == name) {
@@ -149,6 +164,8 @@ std::string to_json(const Report& report) {
     if (!report.scheme.empty()) json["scheme"] = report.scheme;
     json["parameters"] = parameters_json(report);
     if (report.solve) add_solve(json, *report.solve);
+    if (report.volume) json["volume"] = *report.volume;
+    if (report.spectrum) json["spectrum"] = spectrum_json(*report.spectrum);
     if (report.info) add_info(json, *report.info);
     add_lists(json, report);
     json["seconds"] = seconds_json(report.seconds);

@@ -2,6 +2,7 @@
 // What a command found out, and the JSON of it (--report).
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -14,7 +15,7 @@
 namespace lcl::cli {
 
 using Histogram = std::vector<std::pair<std::int32_t, std::int32_t>>;
-using Parameter = std::variant<double, std::int64_t, bool, std::string, std::vector<std::string>>;
+using Parameter = std::variant<double, std::int64_t, bool, std::string, std::vector<std::string>, std::vector<double>, std::vector<int>>;
 
 struct MeshSummary {
     lcl_mesh_info info = LCL_MESH_INFO_INIT;  ///< edges -1: the mesh is not sound, and all that follows from edges is unknown
@@ -51,6 +52,15 @@ struct KernelCheck {
     bool passed = false;
 };
 
+/// Energies of the terms of the expansion, channel by channel.
+struct SpectrumSummary {
+    std::vector<std::string> channels;  ///< x, y, z, and the names of further ones
+    std::vector<double> energies;       ///< a row a term, a value a channel
+};
+
+/// Energy of a term: that of x, y and z.
+double position_energy(const double* energies);
+
 /// Seconds by phase; 0: it did not happen, or is part of `solve` (the transfers of `limit`).
 struct Seconds {
     double read = 0, topology = 0, compile = 0, upload = 0, solve = 0, download = 0, write = 0, total = 0;
@@ -67,6 +77,8 @@ struct Report {
     std::string scheme;
     std::vector<std::pair<std::string, Parameter>> parameters;
     std::optional<SolveSummary> solve;
+    std::optional<std::array<double, 2>> volume;  ///< before and after, of closed meshes
+    std::optional<SpectrumSummary> spectrum;
     std::optional<InfoSummary> info;
     std::optional<std::vector<lcl_device_info>> devices;
     std::optional<std::vector<KernelCheck>> kernels;

@@ -3,6 +3,7 @@
 
 #include "host/cli/csv.h"
 #include "host/cli/failure.h"
+#include "host/cli/option_names.h"
 
 namespace lcl::cli {
 
@@ -62,6 +63,17 @@ SchemeChoice choose_scheme(Job& job, lcl_mesh mesh) {
     note_scheme(job, choice.options);
     require_suitable(job, mesh, choice.options);
     return choice;
+}
+
+void resolve_alpha(Job& job, Context& context, lcl_mesh mesh, lcl_scheme_options& scheme) {
+    if (!scheme.alpha_auto) return;
+    if (!context) context = open_device(job);
+    const Operator A = make_operator(job, context.get(), mesh, scheme);
+    lcl_scheme_options in_use = LCL_SCHEME_OPTIONS_INIT;
+    check(lcl_operator_get_scheme(A.get(), &in_use));
+    scheme.alpha = in_use.alpha;
+    scheme.alpha_auto = 0;
+    note_scheme(job, scheme);
 }
 
 void note_scheme(Job& job, const lcl_scheme_options& scheme) {

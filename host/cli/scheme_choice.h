@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// --scheme, --alpha, --mask, --lambda, --subset as the library takes them.
+// --scheme, --alpha, --mask, --lambda and --subset as the library takes them.
 #pragma once
 
 #include <vector>
@@ -24,6 +24,9 @@ lcl_scheme default_scheme(const Options& options, lcl_mesh mesh);
 
 /// Reads the files of the options, and refuses (exit code 3) a scheme that does not fit the mesh before a device is opened.
 SchemeChoice choose_scheme(Job& job, lcl_mesh mesh);
+
+/// --alpha auto asks the operator of IN, on a device that is opened where there is none yet: `scheme` then holds the number.
+void resolve_alpha(Job& job, Context& context, lcl_mesh mesh, lcl_scheme_options& scheme);
 
 /// The parameters of the report that depend on the scheme.
 void note_scheme(Job& job, const lcl_scheme_options& scheme);

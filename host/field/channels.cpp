@@ -62,7 +62,7 @@ void refuse_not_finite(const Plan& plan, const double* values, std::size_t strid
 std::vector<ChannelBlock> channel_blocks(int channels) {
     std::vector<ChannelBlock> blocks;
     for (int first = 0; first < channels;) {
-        const int count = std::min(channels - first, first == 0 ? 3 : 8);
+        const int count = std::min(channels - first, 8);
         blocks.push_back({first, count, row_width(count)});
         first += count;
     }
@@ -98,14 +98,22 @@ Transform transform_of_ranges(const Plan& plan, const ValueRanges& ranges) {
     const int channels = static_cast<int>(low.size());
     Transform transform{std::vector<double>(channels, 0.0), std::vector<double>(channels, 1.0)};
     if (plan.isolated_count == plan.vertex_count) return transform;
-    double diagonal = 0;
-    for (int c = 0; c < std::min(channels, 3); ++c) diagonal = std::hypot(diagonal, high[c] - low[c]);
+    double diagonal = 0, farthest = 0;
+    const auto distance = [&, &low = low, &high = high](int c) { return std::max(std::fabs(low[c]), std::fabs(high[c])); };
+    for (int c = 0; c < std::min(channels, 3); ++c) {
+        diagonal = std::hypot(diagonal, high[c] - low[c]);
+        farthest = std::max(farthest, distance(c));
+    }
     for (int c = 0; c < channels; ++c) {
-        const double size = c < 3 ? diagonal : high[c] - low[c];
-        transform.centre[c] = low[c] + (high[c] - low[c]) / 2;
+        double size = c < 3 ? diagonal : high[c] - low[c];
+        if (plan.rows_sum_to_one) transform.centre[c] = low[c] + (high[c] - low[c]) / 2;
+        else if (size == 0) size = c < 3 ? farthest : distance(c);
         if (!std::isfinite(size) || (size > 0 && !std::isfinite(1 / size)))
             throw BadInput("the values of channel " + std::to_string(c) + " go from " + std::to_string(low[c]) + " to " + std::to_string(high[c]) +
                            ", a size that double precision cannot scale: use other units");
+        if (!plan.rows_sum_to_one && distance(c) > float_range * size)
+            throw BadInput("the values of channel " + std::to_string(c) + " go from " + std::to_string(low[c]) + " to " + std::to_string(high[c]) +
+                           ", too far from 0 for rows that do not sum to 1: move them closer");
         if (size > 0) transform.scale[c] = 1 / size;
     }
     return transform;

@@ -19,9 +19,11 @@ constexpr double float_range = 1e37;  // isolated vertices are cut off here
 /// Components of a row of so many channels: vectors of the kernels.
 constexpr int row_width(int count) { return count > 4 ? 8 : count > 2 ? 4 : count; }
 
-/// The first block holds the position, x, y, z (or fewer), alone: its norm is the residual E_k. Further channels follow in
-/// eights, which cost a CPU little more than fours: indices are read once for both.
+/// Eights, which cost a CPU little more than fours: indices are read once for both. The first block begins with the position, x, y, z (or fewer), whose norm,
+/// the residual E_k, is kept apart from that of channels beside it.
 std::vector<ChannelBlock> channel_blocks(int channels);
+/// Whether a block holds the position and more.
+inline bool is_mixed(const ChannelBlock& block) { return block.first == 0 && block.count > 3; }
 
 /// n x c values in a caller's memory: row v begins at value v * stride.
 template <class Values>
@@ -42,15 +44,15 @@ auto with_type(const RowsOf<Values>& rows, const Body& body) {
     return rows.is_float ? body(static_cast<Float*>(rows.values)) : body(static_cast<Double*>(rows.values));
 }
 
-/// stored = (value - centre) * scale, one of each a channel. Rows of A sum to 1, so A commutes with it, and models that are far away or huge lose nothing in
-/// float.
+/// stored = (value - centre) * scale, one of each a channel. Where rows of A sum to 1, A commutes with it, and models that are far away or huge lose nothing in
+/// float; where they do not, the centre is 0.
 struct Transform {
     std::vector<double> centre, scale;
 };
 
-/// Positions: centre and inverse diagonal of the bounding box; further channels: middle and inverse range. 1 where a range is 0. Isolated vertices are left
-/// out. BadInput for a value that is not finite, or values so large or so close together that their size or its inverse is none. values: row v of `stride`
-/// doubles belongs to vertex v.
+/// Positions: centre and inverse diagonal of the bounding box; further channels: middle and inverse range. 1 where a range is 0, or, where rows do not sum to
+/// 1, the inverse of the largest value. Isolated vertices are left out. BadInput for a value that is not finite, or values so large, so close together or so
+/// far from 0 where that is the centre that they cannot be scaled. values: row v of `stride` doubles belongs to vertex v.
 Transform fit_transform(const Plan& plan, const double* values, std::size_t stride, int channels);
 
 /// The same in two steps, for values of any kind.

@@ -166,11 +166,11 @@ SeriesSteps term_steps(int term_count) {
     return {SeriesThird::older, {apply}, {remain}, term_count - 1};
 }
 
-// A step of strength takes off about as much more of the eigenvalue 1/4, the middle frequencies of a regular mesh: gains 1, .82, .68, .47, .33, .19, .11, .08,
-// .04, .007, .0003 of D^k.
+// Each step lets less of the eigenvalue 1/4, the middle frequencies of a regular mesh, through D^k: 1, .82, .68, .47, .33, .19, .08, .007, 5e-5, .. Large noise
+// takes the last ones (bench/quality).
 DenoiseSettings denoise_settings(double strength) {
     if (!(strength >= 0 && strength <= 1)) throw InvalidArgument("strength is " + std::to_string(strength) + ", it goes from 0 to 1");
-    constexpr std::array<DenoiseSettings, 11> settings{{{2, 0}, {5, 1}, {3, 1}, {3, 2}, {2, 2}, {2, 3}, {2, 4}, {1, 3}, {1, 4}, {1, 6}, {1, 10}}};
+    constexpr std::array<DenoiseSettings, 11> settings{{{2, 0}, {5, 1}, {3, 1}, {3, 2}, {2, 2}, {2, 3}, {1, 3}, {1, 6}, {1, 12}, {1, 30}, {1, 100}}};
     return settings[static_cast<std::size_t>(std::lround(strength * 10))];
 }
 

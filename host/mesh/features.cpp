@@ -10,8 +10,6 @@
 namespace lcl {
 namespace {
 
-constexpr double radians_per_degree = 0.017453292519943295;
-
 void check_vertex(const Topology& topology, Index v, const char* what) {
     if (v >= 0 && v < topology.vertex_count) return;
     throw BadInput(std::string(what) + " uses vertex " + std::to_string(v) + ", the mesh has " + std::to_string(topology.vertex_count) + ": correct the index",
@@ -49,7 +47,7 @@ void mark_given_creases(const Topology& topology, const std::vector<std::array<I
 void mark_creases_by_angle(const PolygonMesh& mesh, const Topology& topology, double degrees, Features& features) {
     Array<Vector> normals(topology.face_count);
     parallel_for(topology.face_count, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t f = begin; f < end; ++f) normals[f] = newell_normal(mesh, mesh.positions, static_cast<Index>(f));
+        for (std::size_t f = begin; f < end; ++f) normals[f] = newell_normal(topology, static_cast<Index>(f), mesh.positions);
     });
     parallel_for(topology.edge_count, [&](std::size_t begin, std::size_t end) {
         for (std::size_t e = begin; e < end; ++e) {

@@ -7,9 +7,9 @@
 
 namespace lcl {
 
-Vector newell_normal(const PolygonMesh& mesh, const std::vector<double>& positions, Index f) {
-    const auto point = [&](Index h) { return &positions[3 * static_cast<std::size_t>(mesh.face_vertices[h])]; };
-    const Index begin = mesh.face_offsets[f], end = mesh.face_offsets[f + 1];
+Vector newell_normal(const Topology& topology, Index face, const std::vector<double>& points) {
+    const auto point = [&](Index h) { return &points[3 * static_cast<std::size_t>(topology.face_vertices[h])]; };
+    const Index begin = topology.face_offsets[face], end = topology.face_offsets[face + 1];
     const double* origin = point(begin);  // differences first: faces far from the origin of space keep their digits
     Vector normal{0, 0, 0};
     for (Index h = begin + 1; h + 1 < end; ++h) {
@@ -32,18 +32,17 @@ double angle_between(const Vector& a, const Vector& b) {
     return std::atan2(cross, dot);
 }
 
-std::vector<Vector> vertex_normals(const PolygonMesh& mesh, const Topology& topology, const std::vector<double>& positions) {
-    std::vector<Vector> faces(topology.face_count), normals(topology.vertex_count, Vector{0, 0, 0});
+Array<Vector> vertex_normals(const Topology& topology, const std::vector<double>& points) {
+    Array<Vector> faces(topology.face_count), normals(topology.vertex_count);
     parallel_for(topology.face_count, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t f = begin; f < end; ++f) faces[f] = newell_normal(mesh, positions, static_cast<Index>(f));
+        for (std::size_t f = begin; f < end; ++f) faces[f] = newell_normal(topology, static_cast<Index>(f), points);
     });
     parallel_for(topology.vertex_count, [&](std::size_t begin, std::size_t end) {
         for (std::size_t v = begin; v < end; ++v) {
-            Vector& normal = normals[v];
+            Vector sum{0, 0, 0};
             for (Index i = topology.fan_offsets[v]; i < topology.fan_offsets[v + 1]; ++i)
-                for (int c = 0; c < 3; ++c) normal[c] += faces[topology.half_edge_face[topology.fan_half_edges[i]]][c];
-            const double length = std::hypot(normal[0], normal[1], normal[2]);
-            for (double& component : normal) component = length > 0 ? component / length : 0;
+                for (int c = 0; c < 3; ++c) sum[c] += faces[topology.half_edge_face[topology.fan_half_edges[i]]][c];
+            normals[v] = sum;
         }
     });
     return normals;

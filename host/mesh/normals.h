@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Normals of faces and vertices.
+// Normals of faces and vertices, and angles between them.
 #pragma once
 
 #include <array>
@@ -10,14 +10,15 @@
 namespace lcl {
 
 using Vector = std::array<double, 3>;
+constexpr double radians_per_degree = 0.017453292519943295;
 
-/// Newell's normal of a face: along its normal, twice its area long. positions: vertex_count x 3, the mesh's own or others.
-Vector newell_normal(const PolygonMesh& mesh, const std::vector<double>& positions, Index f);
+/// Newell's normal of a face, twice its area long. points: x, y, z of every vertex.
+Vector newell_normal(const Topology& topology, Index face, const std::vector<double>& points);
 
-/// Angle in radians; 0 where a vector is zero, so that faces without area make no crease.
+/// Angle in radians; 0 where a normal is zero: what has no direction makes no angle.
 double angle_between(const Vector& a, const Vector& b);
 
-/// Unit normals of the vertices: the sum of the normals of the faces round each, by their areas; 0 where that is 0.
-std::vector<Vector> vertex_normals(const PolygonMesh& mesh, const Topology& topology, const std::vector<double>& positions);
+/// For each vertex the sum of the Newell normals of its faces, which weights them by area; zero for isolated vertices.
+Array<Vector> vertex_normals(const Topology& topology, const std::vector<double>& points);
 
 }  // namespace lcl

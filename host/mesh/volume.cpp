@@ -41,7 +41,7 @@ public:
         for (Index f = 0; f < topology_.face_count; ++f) {
             const Index component = component_of_face(f);
             const double* const origin = &positions[3 * static_cast<std::size_t>(origins[component])];
-            const Vector normal = newell_normal(mesh_, positions, f);
+            const Vector normal = newell_normal(topology_, f, positions);
             double sum = 0;
             for (Index h = mesh_.face_offsets[f]; h < mesh_.face_offsets[f + 1]; ++h)
                 for (int c = 0; c < 3; ++c) sum += (positions[3 * static_cast<std::size_t>(mesh_.face_vertices[h]) + c] - origin[c]) * normal[c];
@@ -69,7 +69,8 @@ double root_near_zero(double c0, double c1, double c2, double c3) {
     return t;
 }
 
-std::vector<double> moved(const std::vector<double>& positions, const std::vector<Vector>& directions, const Volumes& volumes, const std::vector<double>& distances) {
+std::vector<double> moved(const std::vector<double>& positions, const Array<Vector>& directions, const Volumes& volumes,
+                          const std::vector<double>& distances) {
     std::vector<double> out = positions;
     for (std::size_t v = 0; v < directions.size(); ++v)
         if (volumes.component_of(static_cast<Index>(v)) >= 0)
@@ -88,9 +89,11 @@ std::vector<std::string> match_volumes(const PolygonMesh& mesh, const Topology& 
                                        const std::vector<std::uint8_t>& is_fixed, std::vector<double>& positions) {
     const Volumes volumes(mesh, topology);
     const std::vector<double> wanted = volumes.measure(before), now = volumes.measure(positions);
-    std::vector<Vector> directions = vertex_normals(mesh, topology, positions);
-    for (std::size_t v = 0; v < directions.size(); ++v)
-        if (is_fixed[v]) directions[v] = {0, 0, 0};
+    Array<Vector> directions = vertex_normals(topology, positions);
+    for (std::size_t v = 0; v < directions.size(); ++v) {
+        const double length = is_fixed[v] ? 0 : std::hypot(directions[v][0], directions[v][1], directions[v][2]);
+        for (double& component : directions[v]) component = length > 0 ? component / length : 0;
+    }
     std::vector<double> unit(volumes.count());
     for (std::size_t i = 0; i < unit.size(); ++i) unit[i] = std::cbrt(std::fabs(now[i])) * 0.01;
     const auto at = [&](double factor) {

@@ -18,7 +18,7 @@ namespace lcl {
 enum class RowKind : std::uint8_t {
     fixed,   ///< identity: corners, isolated vertices, vertices outside the subset, blend ratio 1
     curve,   ///< on a boundary or crease curve: depends on two neighbours on it
-    dart,    ///< one sharp edge: exact row, without a symmetric form
+    dart,    ///< one sharp edge, or a caller's row without a scaling: exact row, without a symmetric form
     smooth,  ///< interior: symmetric under the scaling D
     ghost    ///< no row: the value comes from elsewhere
 };

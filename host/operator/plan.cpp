@@ -8,9 +8,10 @@
 #include <string>
 #include <utility>
 
-#include "host/counting_sort.h"
 #include "host/mesh/face_walk.h"
 #include "host/operator/ordering.h"
+#include "host/operator/plan_parts.h"
+#include "host/parallel.h"
 #include "host/prefetch.h"
 
 namespace lcl {
@@ -81,22 +82,17 @@ public:
 
     Plan build() {
         classify();
-        order_rows();
+        order_rows(plan_, breadth_first_order(topology_, mesh_.positions), groups_, plan_options_.block_rows);
         sort_blocks();
         make_runs();
         with_face_walk(topology_, [&](const auto& walk) { fill_rings(walk); });
         fill_weighted();
         fill_run_values();
-        measure_reach();
+        measure_reach(plan_, plan_options_.block_rows);
         return std::move(plan_);
     }
 
 private:
-    /// Isolated vertices, then RowKind's order.
-    static constexpr std::size_t group_count = 6;
-
-    std::size_t group_of(Index v, RowKind kind) const { return kind == RowKind::fixed && topology_.is_isolated(v) ? 0 : static_cast<std::size_t>(kind) + 1; }
-
     void classify() {
         const std::size_t n = topology_.vertex_count;
         plan_.vertex_count = topology_.vertex_count;
@@ -106,47 +102,9 @@ private:
             for (Index v = static_cast<Index>(begin); v < static_cast<Index>(end); ++v) {
                 const RowClass row = rows_.classify(v);
                 codes_[v] = shape_code(row);
-                groups_[v] = static_cast<std::uint8_t>(group_of(v, row.kind));
+                groups_[v] = row_group(row.kind, topology_.is_isolated(v));
             }
         });
-    }
-
-    /// Breadth-first order inside each part: a stable counting sort by group.
-    void order_rows() {
-        Array<Index> order = breadth_first_order(topology_, mesh_.positions);
-        const std::size_t n = order.size(), pieces = piece_count(n);
-        Array<Index> places(pieces * group_count);
-        std::array<Index, group_count + 1> starts;
-        for_each_piece(n, pieces, [&](std::size_t piece, std::size_t begin, std::size_t end) {
-            std::array<Index, group_count> counts{};
-            for (std::size_t v = begin; v < end; ++v) ++counts[groups_[order[v]]];
-            std::copy(counts.begin(), counts.end(), places.begin() + piece * group_count);
-        });
-        counts_to_places(places, group_count, pieces, starts.data());
-        set_parts(starts);
-        if (plan_.smooth.row_count == plan_.vertex_count) return plan_.vertex_of_row.swap(order);
-        plan_.vertex_of_row.resize(n);
-        for_each_piece(n, pieces, [&](std::size_t piece, std::size_t begin, std::size_t end) {
-            Index* const place = places.data() + piece * group_count;
-            for (std::size_t i = begin; i < end; ++i) plan_.vertex_of_row[place[groups_[order[i]]]++] = order[i];
-        });
-    }
-
-    void set_parts(const std::array<Index, group_count + 1>& starts) {
-        plan_.isolated_count = starts[1];
-        plan_.fixed = {0, starts[2], 0, 0};
-        plan_.curves = {starts[2], starts[3] - starts[2], 0, 0};
-        plan_.darts = {starts[3], starts[4] - starts[3], 0, 0};
-        plan_.smooth = {starts[4], starts[5] - starts[4], 0, 0};
-        plan_.row_count = starts[5];
-        for (Part* part : {&plan_.fixed, &plan_.curves, &plan_.darts, &plan_.smooth}) cut_into_blocks(*part);
-    }
-
-    void cut_into_blocks(Part& part) {
-        part.first_block = static_cast<Index>(plan_.blocks.size());
-        for (Index row = part.first_row; row < part.end_row(); row += plan_options_.block_rows)
-            plan_.blocks.push_back({0, 0, row, std::min(plan_options_.block_rows, part.end_row() - row)});
-        part.block_count = static_cast<Index>(plan_.blocks.size()) - part.first_block;
     }
 
     template <class Body>
@@ -306,6 +264,7 @@ private:
                 const Run& run = plan_.runs[r];
                 if (run.shape != RowShape::weighted) std::fill_n(plan_.diagonal.begin() + run.first, run.count, run.weights.vertex);
                 if (run.first >= plan_.smooth.first_row) bounds[b] = std::min(bounds[b], fill_scaling(run));
+                else fill_scaling_by_faces(run);
             }
         });
         const bool is_smooth_run_of_two =
@@ -331,39 +290,18 @@ private:
         return bound;
     }
 
-    /// How far each block's rows reach, in blocks: rows of a part's blocks are equally many but for the last.
-    void measure_reach() {
-        const Part& smooth = plan_.smooth;
-        std::vector<Index> reaches(smooth.block_count, 0);
-        parallel_for(
-            smooth.block_count,
-            [&](std::size_t begin, std::size_t end) {
-                for (std::size_t b = begin; b < end; ++b) reaches[b] = reach_of(plan_.blocks[smooth.first_block + b]);
-            },
-            4);
-        for (const Index reach : reaches) plan_.reach = std::max(plan_.reach, reach);
-    }
-
-    Index reach_of(const Block& block) const {
-        Index lowest = block.first_row, highest = block.first_row;
-        const auto take = [&](const Index* columns, std::size_t count) {
-            for (std::size_t i = 0; i < count; ++i) {
-                if (columns[i] < plan_.smooth.first_row || columns[i] >= plan_.smooth.end_row()) continue;
-                lowest = std::min(lowest, columns[i]);
-                highest = std::max(highest, columns[i]);
-            }
-        };
-        for (Index r = block.first_run; r < block.first_run + block.run_count; ++r) {
-            const Run& run = plan_.runs[r];
-            if (run.shape != RowShape::weighted) {
-                take(plan_.indices.data() + run.index_offset, static_cast<std::size_t>(run.count) * run.stride());
-                continue;
-            }
-            const std::uint32_t begin = plan_.weighted_offsets[run.index_offset];
-            take(plan_.weighted_indices.data() + begin, plan_.weighted_offsets[run.index_offset + run.count] - begin);
+    /// Of a run off the smooth part: the same formula with the number of faces at each vertex; 0 without faces, and where a blend ratio of 1 leaves no formula.
+    void fill_scaling_by_faces(const Run& run) {
+        Index last = 0;
+        double scaling = 0;  // of `last` faces, without a blend
+        for (Index row = run.first; row < run.first + run.count; ++row) {
+            const Index v = plan_.vertex_of_row[row], faces = topology_.vertex_face_count[v];
+            const double lambda = options_.lambda_at(v);
+            if (faces == 0 || lambda == 1) continue;
+            if (faces != last) scaling = symmetric_scaling(options_.scheme, faces, 0);
+            last = faces;
+            plan_.scaling[row] = scaling / (1 - lambda);
         }
-        const auto block_of = [&](Index row) { return (row - plan_.smooth.first_row) / plan_options_.block_rows; };
-        return std::max(block_of(highest) - block_of(block.first_row), block_of(block.first_row) - block_of(lowest));
     }
 
     const PolygonMesh& mesh_;

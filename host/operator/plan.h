@@ -39,7 +39,9 @@ struct PlanOptions {
 };
 
 /// Everything is in the plan's numbering: fixed rows, curves, darts, smooth rows, then ghosts without rows. Inside a part rows follow a breadth-first order of
-/// the vertices, and inside a block rows of equal shape stand together, so that sweeps find neighbours in cache and take no branch a row.
+/// the vertices, and inside a block rows of equal shape stand together, so that sweeps find neighbours in cache and take no branch a row. Rows that are not of
+/// a scheme are fixed where they are identity rows, else smooth where a scaling makes them symmetric, else they stand where darts do: exact, without a
+/// symmetric form.
 struct Plan {
     Index vertex_count = 0, row_count = 0;
     Array<Index> vertex_of_row;  ///< vertex_count: caller's vertex; ghosts at the end
@@ -53,9 +55,13 @@ struct Plan {
     std::vector<std::uint32_t> weighted_offsets{0};  ///< weighted_count + 1
     std::vector<Index> weighted_indices;
     std::vector<double> weighted_weights;
-    std::vector<double> scaling;   ///< row_count: D_ii that makes D A symmetric on the smooth part; 0 elsewhere
+    /// row_count: D_ii that makes D A symmetric on the smooth part; elsewhere the same formula with n the number of faces, which weights sums over the mesh. 0
+    /// for isolated vertices and blend ratios of 1.
+    std::vector<double> scaling;
+    bool has_scaling = true;       ///< false: rows that came without one; all of `scaling` is 0
+    bool rows_sum_to_one = true;   ///< A maps a constant to itself
     std::vector<double> diagonal;  ///< row_count: A_ii
-    double lambda_min_bound = 0;   ///< proven lower bound of the smooth part's spectrum; NaN where none is known (valence below 3)
+    double lambda_min_bound = 0;   ///< proven lower bound of the smooth part's spectrum (of rows without a scaling: of all eigenvalues); NaN if none is known
     bool has_valence_2 = false;    ///< a smooth vertex with fewer than three faces
 
     bool has_darts() const { return darts.row_count > 0; }

@@ -77,8 +77,6 @@ MeshCounts refined_counts(const MeshCounts& old, Scheme scheme, bool two_phase) 
 /// What a refined mesh holds: positions, faces, parents.
 std::int64_t bytes_of(const MeshCounts& counts) { return 24 * counts.vertices + 4 * counts.corners + 8 * counts.faces; }
 
-std::int64_t physical_memory() { return static_cast<std::int64_t>(sysconf(_SC_PHYS_PAGES)) * sysconf(_SC_PAGESIZE); }
-
 void check_fits(const MeshCounts& counts, int level) {
     const std::string at = "refinement level " + std::to_string(level) + " would ";
     const std::pair<std::int64_t, const char*> numbers[] = {
@@ -210,11 +208,13 @@ private:
     std::optional<DooSabinLayout> layout_;
 };
 
-void check_levels_fit(MeshCounts counts, const SchemeOptions& options, int levels) {
+/// Counts of the last level.
+MeshCounts check_levels_fit(MeshCounts counts, const SchemeOptions& options, int levels) {
     for (int level = 1; level <= levels; ++level) {
         counts = refined_counts(counts, options.scheme, level == 1 && options.is_two_phase());
         check_fits(counts, level);
     }
+    return counts;
 }
 
 /// Parents of parents.
@@ -293,6 +293,14 @@ Refinement refine(const PolygonMesh& mesh, const FeatureOptions& feature_options
     if (tracker) *locations = tracker->locations(current.mesh);
     return current;
 }
+
+RefinedSize refined_size(const PolygonMesh& mesh, const Topology& topology, const Features& features, const SchemeOptions& options, int levels) {
+    const StepInput input{mesh, topology, features, options};
+    const MeshCounts counts = check_levels_fit(Step(input).counts(), options, levels);
+    return {counts.vertices, counts.edges, counts.faces, counts.corners};
+}
+
+std::int64_t physical_memory() { return static_cast<std::int64_t>(sysconf(_SC_PHYS_PAGES)) * sysconf(_SC_PAGESIZE); }
 
 std::vector<double> apply_stencils(const Stencils& stencils, const std::vector<double>& points, int channels) {
     const std::size_t rows = stencils.offsets.size() - 1, c = static_cast<std::size_t>(channels);

@@ -17,6 +17,7 @@
 // boundary are no corners: the boundary between two corners is a straight line anyway.
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
 #include "host/mesh/features.h"
@@ -62,6 +63,17 @@ Refinement refine_once(const PolygonMesh& mesh, const Topology& topology, const 
 /// OutOfMemory, with the number, when a level would have more than 2^31 - 1 of anything or more bytes than the machine has.
 Refinement refine(const PolygonMesh& mesh, const FeatureOptions& features, const SchemeOptions& options, int levels,
                   std::vector<SurfaceLocation>* locations = nullptr);
+
+/// Numbers of a refined mesh.
+struct RefinedSize {
+    std::int64_t vertices = 0, edges = 0, faces = 0, corners = 0;
+};
+
+/// What refine() with so many levels will make, foretold in linear time. Errors as refine().
+RefinedSize refined_size(const PolygonMesh& mesh, const Topology& topology, const Features& features, const SchemeOptions& options, int levels);
+
+/// Bytes of memory that the machine has.
+std::int64_t physical_memory();
 
 /// Applies stencils to points with c channels (old_count x c in, rows x c out), in double.
 std::vector<double> apply_stencils(const Stencils& stencils, const std::vector<double>& points, int channels);

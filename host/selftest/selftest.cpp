@@ -6,6 +6,7 @@
 
 #include "host/apply/row_transfer.h"
 #include "host/apply/transfer.h"
+#include "host/filter/noise.h"
 #include "host/solve/limit_system.h"
 
 namespace lcl {
@@ -179,7 +180,7 @@ private:
     void conjugate_gradients() {
         const Part part = plan_.smooth;
         double weight = 0;  // sums are compared relative to the sum of the scaling
-        for (const double d : plan_.scaling) weight += d;
+        for (Index row = part.first_row; row < part.end_row(); ++row) weight += plan_.scaling[row];
         Field p = field(x_, real_), q = field(x_, real_), x = field(m_, real_), r = field(m_, real_);
         ChannelValues found = A_.cg_apply(p, q, part), expected(channels_), ones(channels_, 0.5);
         for (int c = 0; c < channels_; ++c) expected[c] = scaled_dot(x_, ax_, c) / weight, found[c] /= weight;
@@ -266,6 +267,20 @@ private:
     std::vector<double> m_, x_, ax_;
 };
 
+/// One octave of noise at points on both sides of the origin. A value sums eight slopes, each below 3, by weights of which each is off by some ten roundings.
+bool check_noise(const std::shared_ptr<Context>& context, Real real, const std::function<void(const SelftestResult&)>& report) {
+    constexpr int octave = 2;
+    std::vector<double> points = values_for(5000, 3, 1), expected;
+    for (double& coordinate : points) coordinate *= 100;
+    for (std::size_t i = 0; i < points.size(); i += 3)
+        expected.push_back(improved_noise({4 * points[i], 4 * points[i + 1], 4 * points[i + 2]}) / 4);  // f(2^octave p) / 2^octave
+    const bool is_single = real == Real::single;
+    const SelftestResult result{"lcl_noise", is_single ? "5000 points, single" : "5000 points, double",
+                                largest_difference(noise_octave(context, {}, points, octave, real), expected), 256 * std::ldexp(1, is_single ? -24 : -53)};
+    report(result);
+    return result.passed();
+}
+
 }  // namespace
 
 bool run_selftest(const std::shared_ptr<Context>& context, const std::function<void(const SelftestResult&)>& report) {
@@ -275,6 +290,8 @@ bool run_selftest(const std::shared_ptr<Context>& context, const std::function<v
             if (real == Real::full && !context->device().has_double) continue;
             for (const int channels : {1, 2, 3, 9}) passed = Selftest(context, c, channels, real, report).run() && passed;
         }
+    passed = check_noise(context, Real::single, report) && passed;
+    if (context->device().has_double) passed = check_noise(context, Real::full, report) && passed;
     return passed;
 }
 

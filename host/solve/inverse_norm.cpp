@@ -10,6 +10,7 @@
 
 #include "host/solve/limit_system.h"
 #include "host/solve/recurrences.h"
+#include "host/solve/words.h"
 
 namespace lcl {
 namespace {
@@ -110,14 +111,28 @@ private:
     bool has_converged_ = true;
 };
 
+/// min (a_ii - sum |a_ij|), Gershgorin's bound; weights of meshes are not negative and sum to 1.
+double dominance_of(const LimitSystem& system) {
+    const Plan& plan = system.plan();
+    if (system.origin == Origin::rows) return plan.lambda_min_bound;
+    double dominance = 1;
+    for (Index row = plan.smooth.first_row; row < plan.smooth.end_row(); ++row) dominance = std::min(dominance, 2 * plan.diagonal[row] - 1);
+    return dominance;
+}
+
 }  // namespace
+
+bool has_inverse_norm(const LimitSystem& system) {
+    const Plan& plan = system.plan();
+    return plan.has_scaling ? !plan.has_darts() : dominance_of(system) > 0;
+}
 
 const InverseNorm& inverse_norm_of(LimitSystem& system) {
     if (system.inverse_norm) return *system.inverse_norm;
-    const Plan& plan = system.plan();
-    if (plan.has_darts()) throw Unsupported("no bound of the inverse is known for meshes with darts (creases that end inside the surface)");
-    double dominance = 1;
-    for (Index row = plan.smooth.first_row; row < plan.smooth.end_row(); ++row) dominance = std::min(dominance, 2 * plan.diagonal[row] - 1);
+    if (!has_inverse_norm(system))
+        throw Unsupported("a bound of the inverse needs a self-adjoint operator, " + why_not_symmetric(system) +
+                          (system.plan().has_scaling ? "" : ", and are not diagonally dominant"));
+    const double dominance = dominance_of(system);
     const Spectrum& spectrum = spectrum_of(system);
     if (dominance > 0) system.inverse_norm = InverseNorm{1 / dominance, true};
     else if (spectrum.singular || spectrum.indefinite) system.inverse_norm = InverseNorm{std::numeric_limits<double>::infinity(), spectrum.singular};

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <limits>
 
+#include "host/apply/smoothed_points.h"
+#include "host/operator/user_rows.h"
 #include "host/parallel.h"
 
 namespace lcl {
@@ -51,6 +53,27 @@ std::unique_ptr<LimitSystem> make_limit_system(std::shared_ptr<Context> context,
     system->singular = find_singular_component(topology, features, scheme, plan_options.subset);
     find_weakest(topology, features, *system);
     auto plan = std::make_shared<const Plan>(build_plan(mesh, topology, features, scheme, plan_options));
+    system->A = std::make_unique<DeviceOperator>(std::move(context), std::move(plan), shape);
+    return system;
+}
+
+std::unique_ptr<LimitSystem> make_rows_system(std::shared_ptr<Context> context, const RowMatrix& rows) {
+    const LaunchShape shape = launch_shape(context->device(), rows.count);
+    auto system = std::make_unique<LimitSystem>();
+    system->origin = Origin::rows;
+    system->A = std::make_unique<DeviceOperator>(std::move(context), std::make_shared<const Plan>(build_user_plan(rows, shape.block_rows)), shape);
+    check_spectrum(*system);
+    return system;
+}
+
+std::unique_ptr<LimitSystem> make_feature_system(std::shared_ptr<Context> context, const PolygonMesh& mesh, const Topology& topology, const Features& features,
+                                                 const FeatureOperatorOptions& options) {
+    const LaunchShape shape = launch_shape(context->device(), mesh.vertex_count);
+    auto system = std::make_unique<LimitSystem>();
+    system->origin = Origin::features;
+    system->diagonal = bounding_box_diagonal(mesh, topology);
+    const std::vector<double> points = smoothed_points(mesh, topology, features, options.smoothing);
+    auto plan = std::make_shared<const Plan>(build_feature_plan(mesh, topology, features, points, options, shape.block_rows));
     system->A = std::make_unique<DeviceOperator>(std::move(context), std::move(plan), shape);
     return system;
 }

@@ -8,32 +8,42 @@
 #include <tuple>
 
 #include "host/apply/device_operator.h"
+#include "host/operator/feature_rows.h"
+#include "host/operator/row_matrix.h"
 #include "host/operator/suitability.h"
 
 namespace lcl {
 
 constexpr double near_singular = 0.05;  ///< smallest eigenvalue below which a warning is given and alpha auto takes 0.5
 
+/// Where an operator comes from.
+enum class Origin : std::uint8_t {
+    scheme,    ///< limit points of a mesh
+    rows,      ///< a caller's own
+    features,  ///< weights of a mesh that keep its features
+};
+
 /// What is known of the eigenvalues.
 struct Spectrum {
     double bound = 0;     ///< proven lower bound; NaN where none is known
-    double estimate = 0;  ///< of lambda_min, never below the bound; NaN where A is not self-adjoint (darts)
-    double smooth = 0;    ///< estimate for the smooth block alone: what Chebyshev and W-PIA are set to
+    double estimate = 0;  ///< of lambda_min, never below the bound; NaN where A is not self-adjoint (darts, rows without a scaling)
+    double smooth = 0;    ///< estimate for the smooth block alone, or for rows without a scaling: what Chebyshev and W-PIA are set to
     bool singular = false, indefinite = false;
     std::string message;  ///< one sentence with the cure where singular or indefinite; else empty
     std::string warning;  ///< one sentence where lambda_min is so small that interpolation exaggerates noise; else empty
     std::vector<Index> vertices;
 };
 
-/// |A^-1|_inf of the smooth block, without a unit: how far an error of the residual can reach.
+/// |A^-1|_inf of the smooth block (of rows without a scaling: of all that are not fixed), without a unit: how far an error of the residual can reach.
 struct InverseNorm {
     double value = 0;     ///< NaN where the estimate's solves do not end
     bool proven = false;  ///< an upper bound; else an estimate, which lies below the norm, by a few percent as a rule
 };
 
 struct LimitSystem {
-    SchemeOptions scheme;
-    double diagonal = 0;         ///< of the mesh's bounding box, model units
+    Origin origin = Origin::scheme;
+    SchemeOptions scheme;        ///< of Origin::scheme
+    double diagonal = 0;         ///< of the mesh's bounding box, model units; 0 without a mesh
     Objection singular;          ///< find_singular_component's
     int lowest_valence = 0;      ///< of the smooth vertices, 0 without any
     std::vector<Index> weakest;  ///< smooth vertices of that valence, the first ten: where small eigenvalues come from
@@ -55,6 +65,18 @@ struct LimitSystem {
 std::unique_ptr<LimitSystem> make_limit_system(std::shared_ptr<Context> context, const PolygonMesh& mesh, const Topology& topology, const Features& features,
                                                const SchemeOptions& scheme, PlanOptions plan_options);
 
+/// The same for a caller's rows, with a look at their spectrum. BadInput with the row where an array is wrong or D A is not symmetric; Unsupported where an
+/// eigenvalue above 1, below 0 or not real is found.
+std::unique_ptr<LimitSystem> make_rows_system(std::shared_ptr<Context> context, const RowMatrix& rows);
+
+/// The same for the feature-preserving weights of a mesh.
+std::unique_ptr<LimitSystem> make_feature_system(std::shared_ptr<Context> context, const PolygonMesh& mesh, const Topology& topology, const Features& features,
+                                                 const FeatureOperatorOptions& options);
+
+/// Looks for eigenvalues outside [0, 1], where they are not proven to lie inside: by discs of Gershgorin, else some 30 passes on the host. Remembers what
+/// there is to know of rows without a scaling. Unsupported where it finds one.
+void check_spectrum(LimitSystem& system);
+
 /// Unsupported where A has ghosts, whose values come from elsewhere: neither solves nor filters go without them.
 void refuse_ghosts(const Plan& plan);
 
@@ -62,7 +84,10 @@ void refuse_ghosts(const Plan& plan);
 const Spectrum& spectrum_of(LimitSystem& system);
 
 /// 1/min(2 a_ii - 1) where the smooth rows are diagonally dominant, else the block Hager-Higham estimate (Higham & Tisseur 2000), some ten short solves at the
-/// first call. Unsupported with darts.
+/// first call. Unsupported where has_inverse_norm is false.
 const InverseNorm& inverse_norm_of(LimitSystem& system);
+
+/// No darts; rows without a scaling are diagonally dominant.
+bool has_inverse_norm(const LimitSystem& system);
 
 }  // namespace lcl

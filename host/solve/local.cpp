@@ -30,15 +30,17 @@ double over_relaxation(double lambda_min) { return std::clamp(1.3 - lambda_min, 
 SolveReport LocalSolver::solve(const LocalEdit& edit, const Transform& transform, const SolveOptions& options, Field& M, Field& P) {
     const auto begin = std::chrono::steady_clock::now();
     const Plan& plan = system_.plan();
+    require_symmetric_form(system_, options.solver);
     const auto solve_fully = [&] { return solve_fields(system_, M, transform, options, true, P); };
     if (plan.row_count < plan.vertex_count) return solve_fully();  // which refuses ghosts
-    const double unit = 1 / transform.scale[0], diagonal = options.diagonal > 0 ? options.diagonal : system_.diagonal;
+    const double unit = 1 / transform.scale[0], diagonal = model_size(system_, options, unit);
     target_ = {options.tolerance * diagonal / unit, options.tolerance};
     std::function<bool(int, double, double)> progress;
     if (options.progress) progress = [&](int iteration, double residual, double target) { return options.progress(iteration, residual * unit, target * unit); };
     Monitor monitor(options.max_iterations, target_, progress);
     const Spectrum& spectrum = spectrum_of(system_);
-    const bool is_local = !spectrum.singular && !spectrum.indefinite && start(edit, M, P) && relax(monitor, options.solver == Solver::automatic);
+    const bool may_be_local = plan.has_scaling && !spectrum.singular && !spectrum.indefinite;
+    const bool is_local = may_be_local && start(edit, M, P) && relax(monitor, options.solver == Solver::automatic);
     SolveReport report;
     if (is_local) report = conclude(monitor, unit);
     const auto before_write = std::chrono::steady_clock::now();

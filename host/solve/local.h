@@ -23,9 +23,9 @@ public:
     explicit LocalSolver(LimitSystem& system) : system_(system), region_(system.plan()), transfer_(system.A->shared_context()) {}
 
     /// Writes the rows into M and updates P, which solved A P = M before. M, P: single or full, of one shape and transform. The full solve, started from P,
-    /// takes over on operators that are singular or indefinite, where more than a sixteenth of the rows would have to be looked at, and where this iteration is
-    /// slow. Until then both fields are as before, also if it throws. max_error: over all rows whose residual can have changed. Unsupported on operators with
-    /// ghosts.
+    /// takes over on operators that are singular or indefinite and on rows without a scaling, where more than a sixteenth of the rows would have to be looked
+    /// at, and where this iteration is slow. Until then both fields are as before, also if it throws. max_error: over all rows whose residual can have changed.
+    /// Unsupported on operators with ghosts.
     SolveReport solve(const LocalEdit& edit, const Transform& transform, const SolveOptions& options, Field& M, Field& P);
 
 private:

@@ -9,6 +9,7 @@
 #include "host/apply/host_arrays.h"
 #include "host/solve/curves.h"
 #include "host/solve/recurrences.h"
+#include "host/solve/words.h"
 
 namespace lcl {
 namespace {
@@ -32,7 +33,7 @@ Part from_part(const Plan& plan, const Part& first) {
 class Solve {
 public:
     Solve(LimitSystem& system, const SolveOptions& options, double unit) : system_(system), A_(*system.A), options_(options), unit_(unit) {
-        const double diagonal = options.diagonal > 0 ? options.diagonal : system.diagonal;
+        const double diagonal = model_size(system, options, unit);
         const bool exact = options.exact_sweeps > 0;
         const Target target = exact ? Target{} : Target{options.tolerance * diagonal / unit, options.tolerance};
         std::function<bool(int, double, double)> progress;
@@ -40,7 +41,8 @@ public:
             progress = [call = options.progress, unit](int iteration, double residual, double goal) { return call(iteration, residual * unit, goal * unit); };
         monitor_ = std::make_unique<Monitor>(exact ? options.exact_sweeps : options.max_iterations, target, progress, exact);
         choose();
-        if (solver_ == Solver::conjugate_gradients) monitor_->allow_growth();
+        const bool may_grow_first = !system.plan().has_scaling;  // E - A may be far from normal
+        if (solver_ == Solver::conjugate_gradients || may_grow_first) monitor_->allow_growth();
     }
 
     /// Rows before these are solved directly, and the device iterates on what is left.
@@ -88,19 +90,20 @@ public:
 
     /// Compares the final residual with the tolerance and words what is wrong.
     void judge(const ResidualNorms& final_norms) {
-        const double diagonal = options_.diagonal > 0 ? options_.diagonal : system_.diagonal;
+        const double diagonal = model_size(system_, options_, unit_);
         const Spectrum& spectrum = spectrum_of(system_);
         report_.max_error = final_norms.position * unit_;
         report_.channel_error = final_norms.others;
         const bool converged = report_.max_error <= options_.tolerance * diagonal && report_.channel_error <= options_.tolerance;
         const Plan& plan = system_.plan();
-        const bool nothing_proven = plan.has_darts() || std::isnan(plan.lambda_min_bound);
+        const bool nothing_proven = plan.has_scaling && (plan.has_darts() || std::isnan(plan.lambda_min_bound));  // other rows may be far from normal
         const bool failed =
             monitor_->outcome() == Outcome::indefinite || (monitor_->outcome() == Outcome::diverged && nothing_proven && options_.solver == Solver::automatic);
-        report_.status = spectrum.indefinite || (failed && !converged) ? SolveStatus::indefinite
-                         : spectrum.singular                           ? SolveStatus::singular
-                         : converged                                   ? SolveStatus::converged
-                                                                       : SolveStatus::not_converged;
+        report_.status = spectrum.indefinite ? SolveStatus::indefinite
+                         : spectrum.singular ? SolveStatus::singular  // also where rounding made iterations meet a negative eigenvalue
+                         : converged         ? SolveStatus::converged
+                         : failed            ? SolveStatus::indefinite
+                                             : SolveStatus::not_converged;
         if (report_.status == SolveStatus::converged) return;
         report_.message = !spectrum.message.empty() ? spectrum.message : spectrum.warning.empty() ? reason() : reason() + "; " + spectrum.warning;
         report_.vertices = spectrum.message.empty() ? system_.weakest : spectrum.vertices;
@@ -111,9 +114,7 @@ private:
         const Plan& plan = system_.plan();
         solver_ = options_.solver;
         part_ = plan.all_rows();
-        if (solver_ == Solver::conjugate_gradients && plan.has_darts())
-            throw InvalidArgument("conjugate gradients need a self-adjoint operator, and with darts (creases that end inside the surface, such as at vertex " +
-                                  std::to_string(plan.vertex_of_row[plan.darts.first_row]) + ") there is none: use auto, chebyshev, wpia or gs");
+        require_symmetric_form(system_, solver_);
         if (solver_ == Solver::automatic) {
             const bool unproven = !plan.has_darts() && std::isnan(plan.lambda_min_bound);
             const bool slow = !plan.has_darts() && spectrum_of(system_).smooth < chebyshev_least;
@@ -282,17 +283,20 @@ private:
     std::string reason() const {
         constexpr const char* not_in_float = "the values are kept in float, which cannot hold them to this tolerance: use fields of double precision";
         const std::string after = " after " + std::to_string(monitor_->iteration()) + " iterations";
-        const char* other = options_.solver == Solver::automatic ? ": allow more iterations, or use a larger alpha" : ": use solver auto";
+        const bool is_auto = options_.solver == Solver::automatic;
+        const char* other = !is_auto                           ? ": use solver auto"
+                            : system_.origin == Origin::scheme ? ": allow more iterations, or use a larger alpha"
+                                                               : ": allow more iterations";
+        const std::string dominance_hint = system_.origin == Origin::scheme ? " (lambda of 1/3 or more)" : "";
         switch (monitor_->outcome()) {
             case Outcome::diverged:
                 return "the residual grows, this iteration does not converge on this operator" + after +
-                       (solver_ == Solver::jacobi ? ": Jacobi is sure to converge only under diagonal dominance (lambda of 1/3 or more), use auto" : other);
+                       (solver_ != Solver::jacobi ? other : ": Jacobi is sure to converge only under diagonal dominance" + dominance_hint + ", use auto");
             case Outcome::stalled:
                 if (monitor_->history().back() < wide_floor) return "the tolerance lies below what the arithmetic reaches" + after + ": use a larger one";
                 if (options_.precision == Precision::mixed && fields_are_float_) return not_in_float;
                 return "the residual no longer falls" + after + (options_.precision == Precision::single ? ": single precision ends here, use mixed" : other);
-            case Outcome::indefinite:
-                return "a negative eigenvalue was met, the limit operator is indefinite: use a larger alpha (0.5; alpha auto does so) or a lambda above 0";
+            case Outcome::indefinite: return "a negative eigenvalue was met, " + std::string(operator_name(system_)) + " is indefinite: " + cure(system_);
             case Outcome::converged: return not_in_float;
             case Outcome::exhausted: break;
         }
@@ -311,10 +315,12 @@ private:
 };
 
 /// Bound of the distance to the exact solution, part by part: fixed rows are off by their residual, curves by at most 1/(2 a_ii - 1) times it, the smooth block
-/// by |A^-1|_inf times its residual and what the error of the other rows adds to it. NaN with darts.
+/// by |A^-1|_inf times its residual and what the error of the other rows adds to it. A caller's fixed rows hold M to the bit. NaN with darts, and where nothing
+/// is known of rows without a scaling.
 double error_bound(LimitSystem& system, double max_error) {
     const Plan& plan = system.plan();
-    if (plan.has_darts()) return nan;
+    if (!has_inverse_norm(system)) return nan;
+    if (system.origin == Origin::rows) return inverse_norm_of(system).value * max_error;
     double outer_error = plan.fixed.row_count > plan.isolated_count ? max_error : 0;
     for (Index row = plan.curves.first_row; row < plan.curves.end_row(); ++row) outer_error = std::max(outer_error, max_error / (2 * plan.diagonal[row] - 1));
     if (plan.smooth.row_count == 0) return outer_error;
@@ -327,6 +333,20 @@ void certify(LimitSystem& system, const SolveOptions& options, SolveReport& repo
 }
 
 }  // namespace
+
+double model_size(const LimitSystem& system, const SolveOptions& options, double unit) {
+    return options.diagonal > 0 ? options.diagonal : system.diagonal > 0 ? system.diagonal : unit;
+}
+
+void require_symmetric_form(const LimitSystem& system, Solver solver) {
+    const Plan& plan = system.plan();
+    const bool is_gauss_seidel = solver == Solver::gauss_seidel || solver == Solver::gauss_seidel_coloured;
+    if (solver == Solver::conjugate_gradients && (plan.has_darts() || !plan.has_scaling))
+        throw InvalidArgument("conjugate gradients need a self-adjoint operator, " + why_not_symmetric(system) + ": use auto, chebyshev, wpia" +
+                              (plan.has_scaling ? " or gs" : " or pia"));
+    if (is_gauss_seidel && !plan.has_scaling)
+        throw InvalidArgument("Gauss-Seidel needs a self-adjoint operator, " + why_not_symmetric(system) + ": use auto, chebyshev, wpia or pia");
+}
 
 SolveReport solve_host(LimitSystem& system, const double* M, std::size_t stride, int channels, const SolveOptions& options, bool warm_start, double* P,
                        std::size_t P_stride) {

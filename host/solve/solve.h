@@ -23,7 +23,7 @@ struct SolveOptions {
     double weight = 0;                                  ///< W-PIA; 0: the best
     bool keep_going = false;                            ///< iterate although singular or indefinite
     bool certify = false;                               ///< fill surface_error_bound
-    double diagonal = 0;                                ///< model units; 0: the mesh's
+    double diagonal = 0;                                ///< model units; 0: the mesh's, without one that of the box of M
     std::function<bool(int, double, double)> progress;  ///< (iteration, residual, target), model units; false cancels
 };
 
@@ -43,6 +43,12 @@ struct SolveReport {
     double seconds_upload = 0, seconds_solve = 0, seconds_download = 0;
     Index changed_rows = 0;  ///< of P, by a local solve
 };
+
+/// What the tolerance refers to, model units. unit: 1 in the fields, the diagonal of the box of M.
+double model_size(const LimitSystem& system, const SolveOptions& options, double unit);
+
+/// InvalidArgument for a solver that needs a symmetric form which the operator does not have.
+void require_symmetric_form(const LimitSystem& system, Solver solver);
 
 /// P with A P = M through host memory. M: vertex_count rows of `channels`, stride apart. P: P_0 where warm_start, else written only; P may be M.
 /// In P fixed and isolated rows hold M's values to the bit, warm start or not. Unsupported on operators with ghosts.

@@ -1,32 +1,31 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
 #include <cmath>
+#include <complex>
+#include <cstdio>
 #include <limits>
 
 #include "host/operator/excerpt.h"
+#include "host/operator/rows_plan.h"
+#include "host/operator/user_rows.h"
 #include "host/solve/limit_system.h"
 #include "host/solve/recurrences.h"
+#include "host/solve/ritz.h"
+#include "host/solve/rough_vector.h"
+#include "host/solve/words.h"
 
 namespace lcl {
 namespace {
 
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 constexpr int lanczos_steps = 16;
 constexpr int lanczos_steps_unproven = 48;  // valence 2: negative eigenvalues are looked for
 constexpr int lanczos_steps_most = 256;
 constexpr double rounding = 2e-5;      // of a Ritz value from float sweeps
+constexpr double outside = 1e-6;       // of [0, 1], for a diagonal element: weights may have been floats once
+constexpr double known_to = 1e-4;      // a Ritz value of rows without a scaling that is taken for an eigenvalue
 constexpr Index sample_least = 65536;  // rows; of larger meshes this many or a share are looked at, round the weakest place
 constexpr Index sample_share = 16;     // wide enough for waves across the levels of a breadth-first order
-
-/// Numbers in [-1, 1) that are the same in every run: a start vector with a part of every eigenvector.
-std::vector<double> rough_vector(std::size_t size) {
-    std::vector<double> values(size);
-    std::uint64_t state = 0x9E3779B97F4A7C15u;
-    for (double& value : values) {
-        state ^= state << 13, state ^= state >> 7, state ^= state << 17;
-        value = static_cast<double>(state >> 11) / 4503599627370496.0 - 1;
-    }
-    return values;
-}
 
 /// Coefficients of so many steps on the smooth block; fewer where the Krylov space ends.
 LanczosCoefficients lanczos(DeviceOperator& A, int steps) {
@@ -55,28 +54,27 @@ double lanczos_estimate(DeviceOperator& A, int steps) {
     }
 }
 
-/// The same for the weakest part of a large mesh: an upper estimate still, since parts have no smaller eigenvalues than the whole.
-double sampled_estimate(DeviceOperator& A, int steps) {
+/// The same for the weakest part of a large mesh: an upper estimate still, since parts have no smaller eigenvalues than the whole. Of other rows nothing says
+/// which part that is.
+double smooth_estimate(const LimitSystem& system, int steps) {
+    DeviceOperator& A = *system.A;
     const Plan& plan = A.plan();
+    if (system.origin != Origin::scheme) return lanczos_estimate(A, steps);
     const Part sample = weakest_blocks(plan, std::max(sample_least, plan.smooth.row_count / sample_share));
     if (2 * sample.row_count >= plan.smooth.row_count) return lanczos_estimate(A, steps);
     DeviceOperator part(A.shared_context(), std::make_shared<const Plan>(excerpt(plan, sample.first_block, sample.block_count)), A.launch_shape());
     return lanczos_estimate(part, steps);
 }
 
-/// Curve rows (L + 4 V + R)/6 have spectrum in [1/3, 1], Doo-Sabin's (L + 6 V + R)/8 in [1/2, 1].
-double curve_bound(const LimitSystem& system) {
-    if (system.plan().curves.row_count == 0) return 1;
-    const double plain = system.scheme.scheme == Scheme::doo_sabin ? 0.5 : 1.0 / 3;
-    return system.scheme.lambda_per_vertex.empty() ? system.scheme.lambda + (1 - system.scheme.lambda) * plain : plain;
+/// Gershgorin's: weights of curves are not negative and sum to 1 (1/3 for (L + 4 V + R)/6, 1/2 for (L + 6 V + R)/8).
+double curve_bound(const Plan& plan) {
+    double bound = 1;
+    for (Index row = plan.curves.first_row; row < plan.curves.end_row(); ++row) bound = std::min(bound, 2 * plan.diagonal[row] - 1);
+    return bound;
 }
 
-const char* cure(Scheme scheme) {
-    return scheme == Scheme::catmull_clark ? "use a larger alpha (0.5; alpha auto does so) or a lambda above 0"
-                                           : "use another scheme, or remove vertices of valence 2";
-}
-
-void judge(const LimitSystem& system, Spectrum& spectrum) {
+/// lowest: the smallest eigenvalue, as far as it is known.
+void judge(const LimitSystem& system, double lowest, Spectrum& spectrum) {
     if (!system.singular.message.empty()) {
         spectrum.singular = true;
         spectrum.message = system.singular.message;
@@ -84,40 +82,101 @@ void judge(const LimitSystem& system, Spectrum& spectrum) {
         spectrum.estimate = spectrum.smooth = 0;
         return;
     }
-    if (spectrum.smooth >= near_singular) return;
-    const std::string value = std::to_string(spectrum.smooth);
+    if (lowest >= near_singular) return;
+    const std::string value = std::to_string(lowest);
     const std::string where =
         system.weakest.empty() ? "" : " (vertex " + std::to_string(system.weakest[0]) + " has valence " + std::to_string(system.lowest_valence) + ")";
     spectrum.vertices = system.weakest;
-    spectrum.indefinite = spectrum.smooth < -rounding;
-    spectrum.singular = !spectrum.indefinite && spectrum.smooth <= rounding;
+    spectrum.indefinite = lowest < -rounding;
+    spectrum.singular = !spectrum.indefinite && lowest <= rounding;
+    const std::string name = operator_name(system);
     if (spectrum.indefinite)
-        spectrum.message = "the limit operator is indefinite, it has an eigenvalue of about " + value + " or less" + where +
-                           ", and no iteration is sure to converge: " + cure(system.scheme.scheme);
-    else if (spectrum.singular)
         spectrum.message =
-            "the limit operator is singular to working precision, its smallest eigenvalue is about " + value + where + ": " + cure(system.scheme.scheme);
+            name + " is indefinite, it has an eigenvalue of about " + value + " or less" + where + ", and no iteration is sure to converge: " + cure(system);
+    else if (spectrum.singular)
+        spectrum.message = name + " is singular to working precision, its smallest eigenvalue is about " + value + where + ": " + cure(system);
     else
-        spectrum.warning = "the limit operator is nearly singular, its smallest eigenvalue is about " + value + where +
-                           ", so noise in the vertices is exaggerated: " + cure(system.scheme.scheme);
+        spectrum.warning =
+            name + " is nearly singular, its smallest eigenvalue is about " + value + where + ", so noise in the vertices is exaggerated: " + cure(system);
+}
+
+std::string text(double value) {
+    char out[32];
+    std::snprintf(out, sizeof out, "%.4g", value);
+    return out;
+}
+
+/// How far a number lies outside the interval [0, 1].
+double distance_from_unit_interval(std::complex<double> value) { return std::hypot(std::max({0.0, -value.real(), value.real() - 1}), value.imag()); }
+
+[[noreturn]] void refuse(std::complex<double> value) {
+    const std::string found = "the rows have an eigenvalue of about " + text(value.real()), needed = ": iterations and filters take eigenvalues from 0 to 1";
+    if (std::fabs(value.imag()) > std::max(-value.real(), value.real() - 1))
+        throw Unsupported(found + " + " + text(std::fabs(value.imag())) + " i, which is not real" + needed);
+    if (value.real() > 1) throw Unsupported(found + ", above 1" + needed + ", so divide all weights by it");
+    throw Unsupported(found + ", below 0" + needed + ", as t E + (1 - t) A has for a t of " + text(-value.real() / (1 - value.real())) + " or more");
+}
+
+/// With a scaling every diagonal element is a quotient <x, A x>_D / <x, x>_D, and lies within the spectrum.
+void refuse_diagonal_outside(const Plan& plan) {
+    for (Index row = plan.smooth.first_row; row < plan.smooth.end_row(); ++row) {
+        const double element = plan.diagonal[row];
+        if (distance_from_unit_interval(element) <= outside) continue;
+        const Index v = plan.vertex_of_row[row];
+        throw Unsupported("row " + std::to_string(v) + " has the diagonal element " + text(element) + ", so that an eigenvalue is " +
+                              (element < 0 ? "below 0" : "above 1") + ": iterations and filters take eigenvalues from 0 to 1",
+                          {{v}, {}});
+    }
+}
+
+/// For rows without a scaling, of which Ritz values are all that is known.
+Spectrum spectrum_without_scaling(const LimitSystem& system, const std::vector<RitzValue>& values) {
+    const double proven = system.plan().lambda_min_bound;
+    Spectrum spectrum;
+    spectrum.bound = proven;
+    spectrum.estimate = values.empty() ? 1 : nan;
+    spectrum.smooth = 1;
+    double known = 1;
+    for (const RitzValue& ritz : values) {
+        spectrum.smooth = std::min(spectrum.smooth, ritz.value.real());
+        if (ritz.error <= known_to) known = std::min(known, ritz.value.real());
+    }
+    spectrum.smooth = std::max({0.0, spectrum.smooth, std::isnan(proven) ? 0.0 : proven});
+    judge(system, std::max(known, 0.0), spectrum);
+    return spectrum;
 }
 
 }  // namespace
 
+void check_spectrum(LimitSystem& system) {
+    const Plan& plan = system.plan();
+    const Interval discs = gershgorin_interval(plan);
+    const bool is_proven = plan.has_scaling && discs.low >= -symmetry_tolerance && discs.high <= 1 + symmetry_tolerance;
+    if (is_proven) return;
+    refuse_diagonal_outside(plan);
+    const std::vector<RitzValue> values = ritz_values(plan);
+    std::complex<double> worst = 0;
+    for (const RitzValue& ritz : values) {
+        const double distance = distance_from_unit_interval(ritz.value);
+        if (distance > ritz.error && distance > distance_from_unit_interval(worst)) worst = ritz.value;
+    }
+    if (distance_from_unit_interval(worst) > 0) refuse(worst);
+    if (!plan.has_scaling) system.spectrum = spectrum_without_scaling(system, values);
+}
+
 const Spectrum& spectrum_of(LimitSystem& system) {
     if (system.spectrum) return *system.spectrum;
-    constexpr double nan = std::numeric_limits<double>::quiet_NaN();
     const Plan& plan = system.plan();
     Spectrum spectrum;
     const bool proven = !std::isnan(plan.lambda_min_bound);
-    const double curves = curve_bound(system);
+    const double curves = curve_bound(plan);
     spectrum.bound = plan.has_darts() || !proven ? nan : std::min(plan.lambda_min_bound, curves);
     if (system.singular.message.empty()) {
-        spectrum.smooth = sampled_estimate(*system.A, proven ? lanczos_steps : lanczos_steps_unproven);
+        spectrum.smooth = smooth_estimate(system, proven ? lanczos_steps : lanczos_steps_unproven);
         if (proven) spectrum.smooth = std::max(spectrum.smooth, plan.lambda_min_bound);
     }
     spectrum.estimate = plan.has_darts() ? nan : std::min(spectrum.smooth, curves);
-    judge(system, spectrum);
+    judge(system, spectrum.smooth, spectrum);
     system.spectrum = spectrum;
     return *system.spectrum;
 }

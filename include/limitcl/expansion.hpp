@@ -38,7 +38,7 @@ struct Denoise {
     int m = 2, k = 3;
     bool plain = false;
 
-    /// m and k in plain words: 0 (k = 0) to 1 (m = 1, k = 10), 0.5 is the default.
+    /// m and k in plain words: 0 (k = 0) to 1 (m = 1, k = 100), 0.5 is the default.
     static Denoise of_strength(double strength, bool plain = false) {
         std::int32_t m = 0, k = 0;
         check(lcl_denoise_settings(strength, &m, &k));

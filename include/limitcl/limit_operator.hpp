@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The limit operator A of a mesh, and fields on its device.
+// The limit operator A of a mesh, operators of your own, and fields on their device.
 #ifndef LIMITCL_LIMIT_OPERATOR_HPP
 #define LIMITCL_LIMIT_OPERATOR_HPP
 
@@ -17,7 +17,7 @@ enum class Precision {
 /// What can be said of the spectrum of A before solving.
 struct Diagnosis {
     double lambda_min_bound = 0;     ///< proven lower bound of the smallest eigenvalue; NaN where none is known
-    double lambda_min_estimate = 0;  ///< from a short Lanczos run; NaN where A is not self-adjoint (darts)
+    double lambda_min_estimate = 0;  ///< from a short Lanczos run; NaN where A is not self-adjoint (darts, rows without D)
     bool singular = false, indefinite = false;
     std::string reason;  ///< one sentence with the cure; "" if all is well
     std::vector<std::int32_t> vertices;
@@ -29,12 +29,45 @@ struct InverseNorm {
     bool proven = false;  ///< a bound by diagonal dominance; else an estimate
 };
 
-/// The limit operator: row i gives the limit point of vertex i on the subdivision surface of the mesh. Rows sum to one. Copies share it.
+/// Rows of a matrix of your own: row i holds weights[offsets[i]] .. weights[offsets[i + 1] - 1] at columns[..], each column at most once, the diagonal among
+/// them. Rows of one entry, 1, are identity rows: their points stay.
+struct Rows {
+    std::vector<std::int64_t> offsets{0};
+    std::vector<std::int32_t> columns;
+    std::vector<double> weights;
+    std::vector<double> scaling;  ///< empty, or D: one number above 0 a row with diag(D) A symmetric, which CG and GS, energies and even morphs need
+
+    /// Adds an entry to the row that is being made, and ends that row.
+    void add(std::int32_t column, double weight) { columns.push_back(column), weights.push_back(weight); }
+    void end_row() { offsets.push_back(static_cast<std::int64_t>(columns.size())); }
+
+    /// The struct of the C API. It points into this object: use it before this object changes or goes. Error LCL_ERROR_INVALID_ARGUMENT for sizes that differ.
+    lcl_rows to_c() const;
+};
+
+/// Weights of a feature-preserving operator: exp(-(angle between the tangent planes at an edge's ends / angle_degrees)^2).
+struct FeatureWeights {
+    double angle_degrees = 20;
+    double diagonal_factor = 2.5;      ///< above 2: eigenvalues lie in [1 - 2 / factor, 1]
+    int smoothing = 3;                 ///< of the points from which the tangent planes are taken; 0: none
+    std::vector<std::int32_t> subset;  ///< empty: all; else the vertices that may move, the others keep their points
+
+    /// The struct of the C API. It points into this object: use it before this object changes or goes.
+    lcl_feature_options to_c() const;
+};
+
+/// The limit operator: row i gives the limit point of vertex i on the subdivision surface of the mesh. Rows sum to one. Copies share it. Operators of your own
+/// take its place in solves, series, filters and morphs.
 class LimitOperator {
 public:
     /// Builds A of a mesh and puts it on the context's device, in linear time. The mesh may change or go afterwards.
     /// Errors: LCL_ERROR_BAD_INPUT (mesh not sound, wrong face degree for the scheme), LCL_ERROR_INVALID_ARGUMENT (options), LCL_ERROR_MEMORY.
     LimitOperator(const Context& context, const Mesh& mesh, const SchemeOptions& options = {});
+    /// An operator from rows instead of a mesh; eigenvalues in (0, 1]. Errors: LCL_ERROR_BAD_INPUT with the row where an array is wrong or D A is not
+    /// symmetric, LCL_ERROR_UNSUPPORTED where an eigenvalue above 1, below 0 or not real was found, LCL_ERROR_MEMORY.
+    static LimitOperator from_rows(const Context& context, const Rows& rows);
+    /// A feature-preserving operator of a mesh, for denoising. Errors: LCL_ERROR_BAD_INPUT (mesh not sound), LCL_ERROR_INVALID_ARGUMENT, LCL_ERROR_MEMORY.
+    static LimitOperator keeping_features(const Context& context, const Mesh& mesh, const FeatureWeights& weights = {});
 
     lcl_operator get() const { return handle_.get(); }
     const Context& context() const { return context_; }
@@ -43,19 +76,21 @@ public:
     int row_count() const { return lcl_operator_row_count(get()); }
     /// Blocks of rows that LimitOperator::step can work on one by one.
     int block_count() const { return lcl_operator_block_count(get()); }
-    /// Scheme and numbers in use (alpha after alpha_auto); the vectors are empty.
+    /// Scheme and numbers in use (alpha after alpha_auto); the vectors are empty. Scheme::by_faces, none, for operators of your own.
     SchemeOptions scheme() const;
     /// Row of a vertex: columns in ascending order with their weights, double.
     std::vector<std::pair<std::int32_t, double>> row(int vertex) const;
     /// Some 20 passes over A at the first call, less on large meshes, then remembered.
     Diagnosis diagnose() const;
-    /// A few solves at the first call where no bound is known. Error LCL_ERROR_UNSUPPORTED with darts.
+    /// A few solves at the first call where no bound is known. Error LCL_ERROR_UNSUPPORTED with darts, and for rows without D that are not dominant.
     InverseNorm inverse_norm() const;
 
     /// Limit points of `points` (vertex_count x channels, model units), through host memory. One pass.
     std::vector<double> limit_points(ArrayView<double> points, int channels = 3, Precision precision = Precision::mixed) const;
 
 private:
+    LimitOperator(const Context& context, OperatorHandle handle) : context_(context), handle_(std::move(handle)) {}
+
     Context context_;
     OperatorHandle handle_;
 };
@@ -100,13 +135,50 @@ inline double step(const LimitOperator& A, double a, double b, const Field& M, c
 }
 
 inline LimitOperator::LimitOperator(const Context& context, const Mesh& mesh, const SchemeOptions& options) : context_(context) {
-    if (!options.lambda_per_vertex.empty() && options.lambda_per_vertex.size() != static_cast<std::size_t>(mesh.vertex_count()))
-        throw Error(LCL_ERROR_INVALID_ARGUMENT, "lambda_per_vertex has " + std::to_string(options.lambda_per_vertex.size()) + " values, the mesh has " +
-                                                    std::to_string(mesh.vertex_count()) + " vertices");
+    detail::require_ratios(options, mesh);
     const lcl_scheme_options c = options.to_c();
     lcl_operator A = nullptr;
     check(lcl_operator_create(context.get(), mesh.get(), &c, &A));
     handle_ = OperatorHandle(A);
+}
+
+inline lcl_rows Rows::to_c() const {
+    const std::size_t count = offsets.empty() ? 0 : offsets.size() - 1, entries = offsets.empty() ? 0 : static_cast<std::size_t>(offsets.back());
+    if (columns.size() != entries || weights.size() != entries || (!scaling.empty() && scaling.size() != count))
+        throw Error(LCL_ERROR_INVALID_ARGUMENT, "the rows have " + std::to_string(columns.size()) + " columns, " + std::to_string(weights.size()) +
+                                                    " weights and " + std::to_string(scaling.size()) + " scalings, their offsets say " +
+                                                    std::to_string(entries) + " entries in " + std::to_string(count) + " rows");
+    lcl_rows c = LCL_ROWS_INIT;
+    c.row_count = static_cast<std::int32_t>(count);
+    c.offsets = offsets.data();
+    c.columns = columns.data();
+    c.weights = weights.data();
+    c.scaling = scaling.empty() ? nullptr : scaling.data();
+    return c;
+}
+
+inline lcl_feature_options FeatureWeights::to_c() const {
+    lcl_feature_options c = LCL_FEATURE_OPTIONS_INIT;
+    c.angle_degrees = angle_degrees;
+    c.diagonal_factor = diagonal_factor;
+    c.smoothing = smoothing <= 0 ? -1 : smoothing;
+    c.subset = subset.empty() ? nullptr : subset.data();
+    c.subset_count = subset.size();
+    return c;
+}
+
+inline LimitOperator LimitOperator::from_rows(const Context& context, const Rows& rows) {
+    const lcl_rows c = rows.to_c();
+    lcl_operator A = nullptr;
+    check(lcl_operator_create_rows(context.get(), &c, &A));
+    return {context, OperatorHandle(A)};
+}
+
+inline LimitOperator LimitOperator::keeping_features(const Context& context, const Mesh& mesh, const FeatureWeights& weights) {
+    const lcl_feature_options c = weights.to_c();
+    lcl_operator A = nullptr;
+    check(lcl_operator_create_features(context.get(), mesh.get(), &c, &A));
+    return {context, OperatorHandle(A)};
 }
 
 inline SchemeOptions LimitOperator::scheme() const {

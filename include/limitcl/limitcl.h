@@ -266,6 +266,9 @@ LCL_API lcl_status lcl_mesh_get_property(lcl_mesh mesh, int32_t index, double* v
 /** Sets the values of a property that is there (`name` exists) or adds one of type double. An integer property becomes double, with a note, where it could not
  * hold them. */
 LCL_API lcl_status lcl_mesh_set_property(lcl_mesh mesh, const char* name, const double* values);
+/** Colours of the vertices, which writers put beside the points in 8 bits; those that were there are replaced, an alpha stays. colours: vertex_count x (red,
+ * green, blue) from 0 to 1. */
+LCL_API lcl_status lcl_mesh_set_colours(lcl_mesh mesh, const double* colours);
 
 typedef LCL_ENUM(lcl_note){
     LCL_NOTE_WARNING = 0,           /**< sentences on what could not be kept or was doubtful, from reading, refining and writing */
@@ -320,16 +323,16 @@ LCL_API void lcl_operator_release(lcl_operator A);
 LCL_API int32_t lcl_operator_vertex_count(lcl_operator A);
 /** Number of rows: vertex_count, or the number of owned vertices. */
 LCL_API int32_t lcl_operator_row_count(lcl_operator A);
-/** The scheme and parameters in use (alpha after alpha_auto); pointers are NULL. */
+/** The scheme and parameters in use (alpha after alpha_auto); pointers are NULL. LCL_SCHEME_DEFAULT, none, for operators of your own. */
 LCL_API lcl_status lcl_operator_get_scheme(lcl_operator A, lcl_scheme_options* options);
 /** Row `vertex` of A in double: writes up to `capacity` entries (column vertices in ascending order, each once), `size` receives the number of all. */
 LCL_API lcl_status lcl_operator_get_row(lcl_operator A, int32_t vertex, int32_t* columns, double* weights, size_t capacity, size_t* size);
 
 typedef struct lcl_diagnosis {
     uint32_t struct_size;
-    double lambda_min_bound;    /**< proven lower bound of the smallest eigenvalue; NaN where none is known (darts, valence 2) */
+    double lambda_min_bound;    /**< proven lower bound of the smallest eigenvalue; NaN where none is known (darts, valence 2, rows that are not dominant) */
     double lambda_min_estimate; /**< from a short Lanczos run on the device, never below the bound; of more than 131,072 smooth rows only a sixteenth (65,536 at
-                                     least) are looked at, where small diagonal elements crowd; NaN where A is not self-adjoint (darts) */
+                                     least) are looked at, where small diagonal elements crowd; NaN where A is not self-adjoint (darts, rows without D) */
     int32_t singular, indefinite; /**< by exact criterion, or by the estimate */
     char reason[512];             /**< one sentence with the cure, also where A is only nearly singular (estimate below 0.05); "" if all is well */
     int32_t vertices[10], vertex_count;
@@ -366,7 +369,7 @@ typedef struct lcl_solve_options {
     double weight;          /**< W-PIA: 0: the best, from the estimated spectrum; else given, above 0 and below 2 */
     int32_t warm_start;     /**< 1: the output array (or field) holds P_0; 0: P_0 = M */
     int32_t keep_going;     /**< 1: iterate although A is singular or indefinite */
-    double diagonal;        /**< model size that the tolerance refers to; 0: the operator's mesh's */
+    double diagonal;        /**< model size that the tolerance refers to; 0: the operator's mesh's, or without a mesh that of the box of M */
     lcl_progress_callback progress;
     void* progress_user;
     int32_t certify; /**< 1: also surface_error_bound (where rows are not diagonally dominant, some ten short solves at an operator's first call) */
@@ -385,7 +388,7 @@ typedef struct lcl_solve_report {
     double lambda_min;          /**< estimate, NaN if none */
     double max_error;           /**< the final residual recomputed in double, model units */
     double surface_error_bound; /**< with certify: bound of the distance to the exact solution's surface, model units, by the inverse norm
-                                     of lcl_operator_inverse_norm; NaN without, and where none is known (darts) */
+                                     of lcl_operator_inverse_norm; NaN without, and where none is known (darts, rows without D) */
     double channel_error;       /**< the same residual of further channels, relative to their ranges; 0 without */
     double seconds_upload, seconds_solve, seconds_download;
     int32_t vertices[10], vertex_count; /**< where it is singular or indefinite */
@@ -422,11 +425,11 @@ LCL_API lcl_status lcl_interpolate_field(lcl_operator A, lcl_field M, const lcl_
  * to float, of which the full solve's max_error speaks too); every row whose residual can have changed ends within tolerance x diagonal, all others read
  * nothing that has changed. So the largest residual of all rows is at most the larger of the tolerance and what it was before, and the distance of P to the
  * exact solution at most |A^-1|_inf times that. Where P was not within the tolerance before, the update goes on as far as that leads. By over-relaxed
- * Gauss-Seidel on the host, on the rows above the tolerance only. The full solve, warm-started, takes over where the operator is singular or indefinite, where
- * more than a sixteenth of the rows (and 4096) would be looked at, and where the iteration is slow (AUTO: 100 sweeps); then changed_rows is vertex_count.
- * options: solver is AUTO or GS, exact_sweeps 0; precision as for lcl_interpolate_field; warm_start, weight and certify are not looked at but by the full
- * solve. report: max_error over the rows whose residual can have changed, iterations are sweeps, seconds_download and _upload the transfers of single rows.
- * Vertices that keep their points (corners, outside the subset, isolated) take the new ones in P as they are.
+ * Gauss-Seidel on the host, on the rows above the tolerance only. The full solve, warm-started, takes over where the operator is singular or indefinite or has
+ * rows without D, where more than a sixteenth of the rows (and 4096) would be looked at, and where the iteration is slow (AUTO: 100 sweeps); then changed_rows
+ * is vertex_count. options: solver is AUTO or GS, exact_sweeps 0; precision as for lcl_interpolate_field; warm_start, weight and certify are not looked at but
+ * by the full solve. report: max_error over the rows whose residual can have changed, iterations are sweeps, seconds_download and _upload the transfers of single
+ * rows. Vertices that keep their points (corners, outside the subset, isolated) take the new ones in P as they are.
  * Edits far beyond the model's size need fields of doubles: the scale of floats is that of the first upload.
  * Errors and results as those of lcl_interpolate_field. Fields are as before if an argument is refused, and, unless the full solve has begun, if progress
  * cancels. */
@@ -443,7 +446,7 @@ LCL_API void lcl_task_release(lcl_task task);
 
 /** |A^-1|_inf of the smooth block, for error bounds: 1/min(2 a_ii - 1) where rows are diagonally dominant (then `proven` is 1), else estimated by block
  * Hager-Higham (a few solves at the first call, then remembered; an estimate lies below the norm, by a few percent as a rule; NaN where the solves do not end).
- * LCL_ERROR_UNSUPPORTED where A has no self-adjoint form (darts). */
+ * LCL_ERROR_UNSUPPORTED where A has no self-adjoint form (darts; rows without D, unless they are dominant). */
 LCL_API lcl_status lcl_operator_inverse_norm(lcl_operator A, double* norm, int32_t* proven);
 
 /* ---------------------------------------------------------------- fields: values that stay on the device */
@@ -460,7 +463,7 @@ LCL_API int32_t lcl_field_channels(lcl_field field);
 LCL_API lcl_status lcl_field_upload(lcl_field field, const void* values, lcl_type type, size_t stride);
 LCL_API lcl_status lcl_field_download(lcl_field field, void* values, lcl_type type, size_t stride);
 /** Gives `field` the centre and scale of `of`, so that both can stand in one formula: before its first upload, or where they are the same. `of` may belong to
- * another operator. */
+ * another operator. Where the rows of the field's operator do not sum to 1, its centre is 0, and another one is refused. */
 LCL_API lcl_status lcl_field_match(lcl_field field, lcl_field of);
 /** Single rows by vertex: count x channels, doubles. For halo exchange between the parts of a cluster. */
 LCL_API lcl_status lcl_field_read_vertices(lcl_field field, const int32_t* vertices, size_t count, double* values);
@@ -496,40 +499,44 @@ LCL_API lcl_status lcl_mesh_get_locations(lcl_mesh refined, int32_t* faces, int3
 /* ---------------------------------------------------------------- operators of your own */
 
 /** Rows of a matrix A of the caller's: row i holds weights[offsets[i]] .. weights[offsets[i + 1] - 1] at columns[..], each column at most once, the diagonal
- * among them. */
+ * among them, which is not 0. Rows of one entry, 1, are identity rows: their points stay. */
 typedef struct lcl_rows {
     uint32_t struct_size;
     int32_t row_count;
     const int64_t* offsets; /**< row_count + 1, from 0 on */
     const int32_t* columns; /**< offsets[row_count] */
     const double* weights;  /**< as many */
-    const double* scaling;  /**< NULL, or D: row_count numbers above 0 with diag(D) A symmetric, which CG and GS, energies and even morphs need */
+    const double* scaling;  /**< NULL, or D: row_count numbers above 0 with diag(D) A symmetric (identity rows, and columns of them, are left out of that), which
+                                 CG and GS, energies and even morphs need */
 } lcl_rows;
 #define LCL_ROWS_INIT \
     { (uint32_t)sizeof(lcl_rows), 0, NULL, NULL, NULL, NULL }
 
 /** An operator from rows instead of a mesh: solves, series, filters and morphs take it like any other (mesh expansion paper, section 9: A may be any matrix with
  * eigenvalues in (0, 1]). Checked here: arrays, finite weights, symmetry of diag(D) A (to 1e-12 of its largest element), and the spectrum, by proof where the
- * rows allow one (Gershgorin) and else by an Arnoldi run of some 30 steps. LCL_ERROR_BAD_INPUT with the row where an array is wrong or D A is not symmetric;
- * LCL_ERROR_UNSUPPORTED where an eigenvalue above 1, below 0 or not real was found. An eigenvalue of 0 is no failure here: interpolation reports it as
- * LCL_ERROR_SINGULAR. Without D: CG and GS are refused (LCL_ERROR_INVALID_ARGUMENT). Where rows do not sum to 1, constants are no fixed points of the filters.
- * tolerance x diagonal of solves refers to the bounding box of M. */
+ * rows allow one (Gershgorin) and else by an Arnoldi run of some 30 steps (in double on the host; without D a few seconds for a million rows).
+ * LCL_ERROR_BAD_INPUT with the row where an array is wrong or D A is not symmetric; LCL_ERROR_UNSUPPORTED where an eigenvalue above 1, below 0 or not real was
+ * found. An eigenvalue of 0 is no failure here: interpolation reports it as LCL_ERROR_SINGULAR. Without D: CG and GS are refused (LCL_ERROR_INVALID_ARGUMENT),
+ * residuals may grow before they fall, and lcl_solve_local solves the whole. Where rows do not sum to 1, constants are no fixed points of the filters, and
+ * fields keep values round 0: far from it, floats lose digits. tolerance x diagonal of solves refers to the bounding box of M. */
 LCL_API lcl_status lcl_operator_create_rows(lcl_context context, const lcl_rows* rows, lcl_operator* A);
 
 typedef struct lcl_feature_options {
     uint32_t struct_size;
-    double angle_degrees;   /**< 0: 30. Angle between the tangent planes at an edge's ends at which its weight has fallen to 1/e */
+    double angle_degrees;   /**< 0: 20. Angle between the tangent planes at an edge's ends at which its weight has fallen to 1/e, at most 180 */
     double diagonal_factor; /**< 0: 2.5. D_ii = factor x sum of the weights at i; above 2, so that eigenvalues lie in [1 - 2 / factor, 1] */
-    int32_t smoothing;      /**< 0: 3; below 0: none. Applications of D A (m = 2) to the points from which the tangent planes are taken */
+    int32_t smoothing;      /**< 0: 3; below 0: none; at most 1000. Applications of E - (E - A)^3, A of the default scheme, to the points from which the tangent
+                                 planes are taken */
     const int32_t* subset;  /**< NULL, or the vertices that the filter may move: the others keep their points (identity rows) */
     size_t subset_count;
 } lcl_feature_options;
 #define LCL_FEATURE_OPTIONS_INIT \
     { (uint32_t)sizeof(lcl_feature_options), 0.0, 0.0, 0, NULL, 0 }
 
-/** A feature-preserving operator of a mesh, A = D^-1 (D - L_w), L_w the graph Laplacian of the edges with weights that fall with the dihedral angle of the
- * tangent planes at their ends: exp(-(angle / angle_degrees)^2). Vertices along a sharp edge hold together, and vertices beside it hardly pull at them.
- * Boundary vertices hold to their neighbours on the boundary alone; corners and vertices outside `subset` stay. For denoising: it is no limit operator. */
+/** A feature-preserving operator of a mesh, A = D^-1 (D - L_w), L_w the graph Laplacian of the edges with weights that fall with the angle between the tangent
+ * planes at their ends: exp(-(angle / angle_degrees)^2). Vertices along a sharp edge hold together, and vertices beside it hardly pull at them. Vertices of
+ * boundary and crease curves hold to their neighbours on the curve alone; corners and vertices outside `subset` stay, and so do those whose weights are all 0.
+ * For denoising: it is no limit operator. */
 LCL_API lcl_status lcl_operator_create_features(lcl_context context, lcl_mesh mesh, const lcl_feature_options* options, lcl_operator* A);
 
 /* ---------------------------------------------------------------- mesh expansion, and what it is good for */
@@ -591,8 +598,8 @@ typedef struct lcl_denoise_options {
 LCL_API lcl_status lcl_denoise(lcl_operator A, const double* M, size_t stride, int32_t channels, const lcl_denoise_options* options, double* out,
                                size_t out_stride);
 LCL_API lcl_status lcl_denoise_field(lcl_operator A, lcl_field M, const lcl_denoise_options* options, lcl_field out);
-/** m and k in plain words: strength 0 (k = 0: nothing but A, or nothing at all where plain) to 1 (m = 1, k = 10), 0.5 the default m = 2, k = 3; the more, the
- * smoother. */
+/** m and k in plain words: strength 0 (k = 0: nothing but A, or nothing at all where plain) to 1 (m = 1, k = 100), 0.5 the default m = 2, k = 3; the more, the
+ * smoother. For noise of 0.1 mean edge lengths about 0.6, of 0.2 to 0.3 0.8 to 0.9, of more 0.9 to 1. */
 LCL_API lcl_status lcl_denoise_settings(double strength, int32_t* m, int32_t* k);
 /** Moves the points of every closed component along their normals (area-weighted), all by one distance, until the component encloses the volume that it had
  * with `points` (vertex_count rows of three, `stride` values apart, 0: 3). Corners and `fixed` vertices stay. A component that keeps no volume, or cannot reach
@@ -657,7 +664,7 @@ typedef struct lcl_texture_options {
     uint32_t struct_size;
     int32_t octaves;   /**< 0: 4; at most 20 */
     int32_t levels;    /**< K refinements of the result, octaves - 1 at least; 0: so many */
-    double frequency;  /**< F, noise cells across the diagonal of the bounding box in the first octave; 0: 8 */
+    double frequency;  /**< F, noise cells across the diagonal of the bounding box in the first octave; 0: 8. At most 2^32 in the last one */
     uint32_t seed;
     const double* colours; /**< colour_count x (red, green, blue) from 0 to 1; NULL: five of marble */
     size_t colour_count;
@@ -672,11 +679,17 @@ typedef struct lcl_texture_options {
     { (uint32_t)sizeof(lcl_texture_options), 0, 0, 0.0, 0, NULL, 0, LCL_PRECISION_MIXED, 0.0, 0, 0, NULL, NULL }
 
 /** Procedural texture by interpolated octaves (mesh expansion paper, section 5): octave i is improved Perlin noise f(2^i p)/2^i at the vertices p of the mesh
- * refined i times, p = F (x - centre)/diagonal + an offset from the seed; each octave is interpolated by a limit surface of its own, all are added on the mesh
- * refined `levels` times, at its limit points, and normalised to t in [0, 1] (1/2 where all is one). `textured` is that mesh at its limit points, with the
- * property "noise" (t) and colours red, green, blue from a cubic B-spline through the colours, colour j at t = j/(colour_count - 1), natural ends, clamped to
- * [0, 1]. Deterministic by seed. alpha and lambda rule the first refinement alone. `scheme`: as for lcl_operator_create. report: of the worst solve.
- * LCL_ERROR_MEMORY, with the number, where the levels do not fit. */
+ * refined i times, p = F (x - centre)/diagonal + an offset from the seed, which is far from whole numbers in every octave; each octave is interpolated by a
+ * limit surface of its own, all are added on the mesh refined `levels` times, at its limit points, and normalised to t in [0, 1] (1/2 where all is one).
+ * `textured` is that mesh at its limit points, with the property "noise" (t) and colours red, green, blue (whole numbers from 0 to 255, as PLY files have them)
+ * from a cubic B-spline through the colours, colour j at t = j/(colour_count - 1), natural ends, clamped to [0, 1]. They replace properties of these names;
+ * others are refined and taken to the limit too. Texture coordinates are dropped with a note, as by lcl_mesh_refine, whose order of vertices it has
+ * (Catmull-Clark and Loop: those of `mesh` come first, with the colours for `mesh` itself). The same seed gives the same texture: to the bit on one device, to
+ * the tolerance on others. alpha and lambda rule the first refinement alone. `scheme`: as for lcl_operator_create, where alpha_auto looks at `mesh` itself,
+ * vertices outside the subset keep their noise as control values, and owned is refused. report (may be NULL): of the worst solve, the one with the largest
+ * error for its tolerance; lengths are values of noise. LCL_ERROR_SINGULAR, _INDEFINITE, _NOT_CONVERGED: the sentence names the octave (vertices are numbered
+ * as in its mesh), and nothing is given out unless keep_going is set. LCL_ERROR_MEMORY, with the number and before anything large is made, where the levels do
+ * not fit. Costs `octaves` solves of one channel, `levels` refinements on the host and one pass. */
 LCL_API lcl_status lcl_texture(lcl_context context, lcl_mesh mesh, const lcl_scheme_options* scheme, const lcl_texture_options* options, lcl_mesh* textured,
                                lcl_solve_report* report);
 

@@ -20,5 +20,6 @@
 #include "refine.hpp"
 #include "scheme.hpp"
 #include "solve.hpp"
+#include "texture.hpp"
 
 #endif

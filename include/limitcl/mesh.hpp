@@ -111,6 +111,8 @@ public:
     std::vector<double> property(const std::string& name) const;
     /// Sets a property that is there or adds one: vertex_count values.
     void set_property(const std::string& name, ArrayView<double> values);
+    /// Colours of the vertices, kept in 8 bits: vertex_count x (red, green, blue) from 0 to 1.
+    void set_colours(ArrayView<double> colours);
     /// Sentences on what reading, refining or writing could not keep.
     std::vector<std::string> warnings() const;
 
@@ -269,6 +271,11 @@ inline std::vector<double> Mesh::property(const std::string& name) const {
 inline void Mesh::set_property(const std::string& name, ArrayView<double> values) {
     require_size(values.size(), 1, name.c_str());
     check(lcl_mesh_set_property(get(), name.c_str(), values.data()));
+}
+
+inline void Mesh::set_colours(ArrayView<double> colours) {
+    require_size(colours.size(), 3, "colours");
+    check(lcl_mesh_set_colours(get(), colours.data()));
 }
 
 inline std::vector<std::string> Mesh::warnings() const {

@@ -70,11 +70,19 @@ inline SchemeOptions SchemeOptions::from_c(const lcl_scheme_options& c) {
     return options;
 }
 
-/// Tests a scheme on a mesh in linear time, without a device. Error LCL_ERROR_INVALID_ARGUMENT for options out of range.
-inline Suitability check_scheme(const Mesh& mesh, const SchemeOptions& options = {}) {
+namespace detail {
+
+inline void require_ratios(const SchemeOptions& options, const Mesh& mesh) {
     if (!options.lambda_per_vertex.empty() && options.lambda_per_vertex.size() != static_cast<std::size_t>(mesh.vertex_count()))
         throw Error(LCL_ERROR_INVALID_ARGUMENT, "lambda_per_vertex has " + std::to_string(options.lambda_per_vertex.size()) + " values, the mesh has " +
                                                     std::to_string(mesh.vertex_count()) + " vertices");
+}
+
+}  // namespace detail
+
+/// Tests a scheme on a mesh in linear time, without a device. Error LCL_ERROR_INVALID_ARGUMENT for options out of range.
+inline Suitability check_scheme(const Mesh& mesh, const SchemeOptions& options = {}) {
+    detail::require_ratios(options, mesh);
     const lcl_scheme_options c = options.to_c();
     lcl_suitability suitability = LCL_SUITABILITY_INIT;
     check(lcl_mesh_check_scheme(mesh.get(), &c, &suitability));

@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "host/cli/option_rules.h"
+
+#include <algorithm>
+#include <iterator>
+#include <stdexcept>
+
+#include "host/cli/failure.h"
+
+namespace lcl::cli {
+
+namespace {
+
+void choose_scheme(Options& options) {
+    for (const char* flag : {"--alpha", "--lambda"}) {
+        if (!options.has(flag)) continue;
+        if (options.has("--mask")) fail(exit_usage, std::string(flag) + " is of catmull-clark and --mask of doo-sabin: give one of them");
+        if (options.has("--scheme") && options.scheme != LCL_SCHEME_CATMULL_CLARK)
+            fail(exit_usage, std::string(flag) + " is of catmull-clark: leave it out, or give --scheme catmull-clark");
+        options.scheme = LCL_SCHEME_CATMULL_CLARK;
+    }
+    if (!options.has("--mask")) return;
+    if (options.has("--scheme") && options.scheme != LCL_SCHEME_DOO_SABIN) fail(exit_usage, "--mask is of doo-sabin: leave it out, or give --scheme doo-sabin");
+    options.scheme = LCL_SCHEME_DOO_SABIN;
+}
+
+void check_streams(const Options& options) {
+    const bool mesh_to_output = options.output == "-" && options.command != "spectrum";
+    const bool streams = options.input == "-" || options.target == "-" || mesh_to_output;
+    if (streams && !options.has("--format")) fail(exit_usage, "standard input and output have no ending: give --format obj, off, ply, stl or om");
+    if (!streams && options.has("--format")) fail(exit_usage, "--format is for standard input and output; a file's ending names its format");
+    if (options.output == "-" && options.report == "-") fail(exit_usage, "-o - and --report - cannot both have standard output: give one of them a file");
+    if (options.map_file == "-") fail(exit_usage, "--map needs a file's name: standard output is for -o and --report");
+}
+
+void check_endings(const Options& options) {
+    for (const std::string& path : {options.input, options.target, options.command == "spectrum" ? std::string() : options.output}) {
+        lcl_format format = LCL_FORMAT_BY_ENDING;
+        if (!path.empty() && path != "-" && lcl_format_of_path(path.c_str(), &format) != LCL_OK) fail(exit_usage, lcl_last_error());
+    }
+}
+
+void check_report_name(const Options& options) {
+    if (options.report.empty() || options.report == "-") return;
+    bool replaces = options.report == options.output || options.report == options.map_file;
+    if (options.command == "morph") {
+        for (int frame = 0; frame <= options.frames && !replaces; ++frame) replaces = options.report == options.frame_pattern.name(frame);
+    }
+    if (replaces) fail(exit_usage, "the report would replace another output, '" + options.report + "': give --report another name");
+}
+
+void check_refine(const Options& options) {
+    if (options.levels == 0 && !options.limit) fail(exit_usage, "--levels 0 changes nothing without --limit: add it, or give a level from 1");
+}
+
+void check_expand(const Options& options) {
+    const char* const ways[] = {"--term", "--sum", "--band", "--equaliser"};
+    const auto count = std::count_if(std::begin(ways), std::end(ways), [&options](const char* way) { return options.has(way); });
+    if (count != 1) fail(exit_usage, "expand needs exactly one of --term I, --sum M, --band I:J and --equaliser w0,..,wm[:r]");
+    if (options.equaliser.remainder && options.series == LCL_SERIES_INTERPOLATION)
+        fail(exit_usage, "--equaliser has a weight of the remainder ':r', which the interpolation series does not have: leave it out");
+}
+
+void check_spectrum(const Options& options) {
+    const bool known = options.output.empty() || options.output == "-" || has_ending(options.output, ".csv") || has_ending(options.output, ".svg");
+    if (!known) fail(exit_usage, "'" + options.output + "': a spectrum is written to .csv or .svg");
+}
+
+void check_denoise(const Options& options) {
+    if (options.has("--strength") && (options.has("--m") || options.has("--k"))) fail(exit_usage, "--strength stands for --m and --k: give it or them");
+    if (!options.feature_operator) return;
+    for (const char* flag : {"--scheme", "--alpha", "--lambda", "--mask"}) {
+        if (options.has(flag))
+            fail(exit_usage, std::string(flag) + " is of the limit operator and has no meaning with --operator features: leave one of them out");
+    }
+}
+
+void check_morph(Options& options) {
+    if (options.output == "-") fail(exit_usage, "a morph is many files: give -o a pattern of names like 'out_%03d.obj'");
+    if (options.input == "-" && options.target == "-") fail(exit_usage, "FROM and TO cannot both be standard input: give one of them a file");
+    try {
+        options.frame_pattern = parse_frame_pattern(options.output);
+    } catch (const std::invalid_argument& error) {
+        fail(exit_usage, std::string("-o: ") + error.what());
+    }
+    if (options.has("--even") && options.has("--linear")) fail(exit_usage, "--even and --linear exclude each other: give one of them");
+    if (options.has("--even") && options.has("--rho")) fail(exit_usage, "--even chooses the ratio of every step: leave --rho out");
+}
+
+void check_texture(const Options& options) {
+    if (options.has("--levels") && options.texture_levels < options.octaves - 1)
+        fail(exit_usage, "--levels " + std::to_string(options.texture_levels) + " cannot hold " + std::to_string(options.octaves) + " octaves: give " +
+                             std::to_string(options.octaves - 1) + " levels or more, or fewer --octaves");
+    if (options.on_mesh && options.scheme == LCL_SCHEME_DOO_SABIN)
+        fail(exit_usage, "--on-mesh needs a refinement that keeps the vertices of the mesh, and doo-sabin's does not: take catmull-clark or loop");
+}
+
+}  // namespace
+
+void apply_rules(Options& options) {
+    choose_scheme(options);
+    if (options.quiet && options.verbosity > 0) fail(exit_usage, "--quiet and -v exclude each other: give one of them");
+    if (options.command == "morph") check_morph(options);  // the pattern before its ending and names
+    check_streams(options);
+    check_endings(options);
+    check_report_name(options);
+    if (!options.map_file.empty() && options.map_file == options.output) fail(exit_usage, "--map would replace the mesh: give it another name");
+    if (options.command == "refine") check_refine(options);
+    if (options.command == "expand") check_expand(options);
+    if (options.command == "spectrum") check_spectrum(options);
+    if (options.command == "denoise") check_denoise(options);
+    if (options.command == "texture") check_texture(options);
+}
+
+}  // namespace lcl::cli
