@@ -94,8 +94,9 @@ class Clean:
         self.is_closed = (edges_of(faces)[1] == 2).all()
 
     def rms(self, points):
-        """To choose settings by, in model units."""
-        return np.sqrt(np.mean(self.surface.distances(points[self.used], exact=False)**2))
+        """To choose settings by, in model units: of 10,000 vertices or a few more, nearly exact."""
+        some = self.used[::max(1, len(self.used) // 10000)]
+        return np.sqrt(np.mean(self.surface.distances(points[some], exact=False)**2))
 
     def measure(self, points):
         """rms, max: distances of the vertices to the clean surface, mean edge lengths; of_diagonal: rms in units of the bounding box's diagonal.
