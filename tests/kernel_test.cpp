@@ -7,6 +7,7 @@
 
 #include <catch2/catch.hpp>
 
+#include "kernels/types.cl.h"
 #include "tests/solver_support.h"
 
 using namespace lcl;
@@ -47,6 +48,8 @@ public:
     /// Every kernel that runs on this type.
     void check_all() {
         check_limit_points();
+        check_series();
+        check_morph();
         if (real_ == Real::wide) return check_wide_residual(), check_residual_of_floats(), check_correct();
         check_relax();
         check_relax_three_term();
@@ -206,6 +209,65 @@ public:
         }
     }
 
+    /// Two chains of steps, of both kinds, with the sums over each step's rows.
+    void check_series() {
+        if (plan_->row_count < plan_->vertex_count) return;  // ghosts have no rows to go on from
+        for (const SeriesThird third : {SeriesThird::input, SeriesThird::older}) {
+            const Index repeated = plan_->vertex_count > 10000 ? 3 : LCL_CHAIN;
+            const SeriesSteps steps{third, {{0.75, 0.25, 0}, {1, -0.5, 0}}, {{0.5, 0.25, 0.25}}, repeated};
+            const auto [values, bound] = expected_chain(steps, x_);
+            const Field x = field(x_);
+            Field out = field(d_), scratch = field(m_);
+            CHECK(A_.series(steps, x, out, scratch));
+            CHECK(difference(download(out), values.back()) <= bound);
+            CHECK(difference(download(x), x_) == 0);
+            if (third == SeriesThird::input) continue;
+            out = field(d_), scratch = field(m_);
+            const std::vector<SeriesSums> sums = A_.series_with_sums(steps, x, out, scratch);
+            CHECK(difference(download(out), values.back()) <= bound);
+            REQUIRE(sums.size() == values.size());
+            for (std::size_t k = 0; k < sums.size(); ++k) check_series_sums(sums[k], values[k], bound);
+        }
+    }
+
+    void check_series_sums(const SeriesSums& found, const Values& y, double bound) const {
+        // Without double, sums are made in float, a block at a time, of values and scalings rounded to float.
+        const double sum_unit = A_.context().device().has_double ? unit_ : (launching_.block_rows + 4) * std::ldexp(1, -24);
+        double total = 0;
+        for (const double scaling : plan_->scaling) total += scaling;
+        REQUIRE((found.linear.size() == static_cast<std::size_t>(channels_) && found.square.size() == static_cast<std::size_t>(channels_)));
+        for (int c = 0; c < channels_; ++c) {
+            double linear = 0, square = 0, size = 1;
+            for (Index row = 0; row < plan_->row_count; ++row) {
+                linear += plan_->scaling[row] * y[at(row, c)];
+                square += plan_->scaling[row] * y[at(row, c)] * y[at(row, c)];
+                size = std::max(size, std::abs(y[at(row, c)]));
+            }
+            CHECK(std::abs(found.linear[c] - linear) <= (bound + 4 * sum_unit * size) * total);
+            CHECK(std::abs(found.square[c] - square) <= 2 * size * (bound + 4 * sum_unit * size) * total);
+        }
+    }
+
+    /// An even and an odd number of steps in place, and what is done row by row.
+    void check_morph() {
+        const Field target = field(m_);
+        for (const Index repeated : {1, 2}) {
+            if (plan_->row_count < plan_->vertex_count) break;
+            const SeriesSteps steps{SeriesThird::older, {{0, 0.75, 0}, {1, -0.5, 0}}, {{0.5, 0.25, 0.25}}, repeated};
+            const auto [values, bound] = expected_chain(steps, x_);
+            Field difference_field = field(x_), scratch = field(d_), frame = field(d_);
+            A_.morph(steps, target, difference_field, scratch, frame);
+            CHECK(difference(download(difference_field), values.back()) <= bound);
+            CHECK(difference(download(frame), sum(1, m_, 1, values.back())) <= bound + 2 * 3 * unit_);
+        }
+        Field y = field(x_), frame = field(d_);
+        A_.morph_blend(0.375, target, y, frame);
+        CHECK(difference(download(y), sum(0.375, x_, 0, x_)) <= unit_);
+        CHECK(difference(download(frame), sum(1, m_, 0.375, x_)) <= 3 * unit_);
+        A_.subtract(target, y, frame);
+        CHECK(difference(download(frame), sum(1, m_, -0.375, x_)) <= 4 * unit_);
+    }
+
     void check_correct() {
         Field x = field(x_), d = A_.make_field(channels_, Real::single);
         d.upload(d_.data(), 0, plan_->vertex_count);
@@ -279,6 +341,39 @@ private:
                 y[i] = s.a * x_[i] + (s.b + s.b_jacobi / plan_->diagonal[row]) * (m_[i] - ax_[i]) + s.c * d[i];
             }
         return y;
+    }
+
+    /// y of every step of a chain, and a bound of what rounding makes of the last: A does not enlarge anything in the largest norm.
+    std::pair<std::vector<Values>, double> expected_chain(const SeriesSteps& steps, const Values& input) const {
+        std::vector<Values> y{input};
+        std::vector<double> bound{0};
+        for (std::int64_t k = 0; k < steps.count(); ++k) {
+            const SeriesStep& s = steps[k];
+            const bool is_older = steps.third == SeriesThird::older;
+            const Values& third = is_older && k > 0 ? y[k - 1] : input;
+            const Values ay = apply(y[k]);
+            Values next = sum(s.a, y[k], s.b, ay);
+            if (s.c != 0) next = sum(1, next, s.c, third);
+            const double size = std::max({largest_of(y[k]), largest_of(third), largest_of(next)});
+            bound.push_back((std::abs(s.a) + std::abs(s.b)) * bound[k] + (is_older && k > 0 ? std::abs(s.c) * bound[k - 1] : 0) +
+                            (std::abs(s.b) * row_tolerance() + 3 * (std::abs(s.a) + std::abs(s.b) + std::abs(s.c)) * unit_) * size);
+            y.push_back(std::move(next));
+        }
+        y.erase(y.begin());
+        return {std::move(y), *std::max_element(bound.begin(), bound.end())};
+    }
+
+    static double largest_of(const Values& values) {
+        double largest = 0;
+        for (const double value : values) largest = std::max(largest, std::abs(value));
+        return largest;
+    }
+
+    /// a x + b y
+    static Values sum(double a, const Values& x, double b, const Values& y) {
+        Values out(x.size());
+        for (std::size_t i = 0; i < x.size(); ++i) out[i] = a * x[i] + b * y[i];
+        return out;
     }
 
     /// `inside` on the part's rows, `outside` on the others.

@@ -2,7 +2,9 @@
 // The self-test through the C API: what a person runs first on a new device must pass here and name what it did.
 #include <set>
 
+#include "host/selftest/selftest.h"
 #include "tests/capi_support.h"
+#include "tests/solver_support.h"
 
 using namespace capi_test;
 
@@ -34,8 +36,10 @@ TEST_CASE("every kernel agrees with the plain host operator on every device", "[
         CHECK(results.failed == 0);
         CHECK(results.count > 20);
         for (const char* kernel :
-             {"lcl_limit_points", "lcl_relax", "lcl_relax_three_term", "lcl_residual", "lcl_correct", "lcl_relax_phase", "lcl_relax_rows", "lcl_cg_apply",
-              "lcl_cg_update", "lcl_cg_direction", "lcl_import_points", "lcl_export_points", "lcl_gather_rows", "lcl_scatter_rows", "lcl_noise"}) {
+             {"lcl_limit_points", "lcl_relax",           "lcl_relax_three_term", "lcl_residual",     "lcl_correct",       "lcl_relax_phase",
+              "lcl_relax_rows",   "lcl_cg_apply",        "lcl_cg_update",        "lcl_cg_direction", "lcl_import_points", "lcl_export_points",
+              "lcl_gather_rows",  "lcl_scatter_rows",    "lcl_series",           "lcl_series_sums",  "lcl_filter",        "lcl_morph",
+              "lcl_morph_blend",  "lcl_morph_difference", "lcl_noise"}) {
             INFO(kernel);
             CHECK(results.kernels.count(kernel) == 1);
         }
@@ -46,4 +50,14 @@ TEST_CASE("every kernel agrees with the plain host operator on every device", "[
 TEST_CASE("the self-test needs no callback", "[selftest][capi][device]") {
     const Context context = open_context();
     succeed(lcl_context_selftest(context.get(), nullptr, nullptr));
+}
+
+TEST_CASE("the self-test passes on a device without double precision", "[selftest][device][pair]") {
+    int count = 0;
+    CHECK(run_selftest(solver_test::context_without_double(), [&](const lcl::SelftestResult& result) {
+        INFO(result.kernel << ", " << result.what << ": " << result.difference << " of " << result.tolerance);
+        CHECK(result.passed());
+        ++count;
+    }));
+    CHECK(count > 20);
 }

@@ -45,7 +45,9 @@ bool DeviceOperator::run_series(const SeriesSteps& steps, const Field& input, Fi
                                 const Prepare& prepare) {
     const std::int64_t count = steps.count();
     const int touched = steps.third == SeriesThird::input ? 3 : 2;
-    for (const Part& part : series_parts()) {
+    const std::vector<Part> parts = series_parts();
+    for (const Part& part : parts) {
+        const bool tells = progress && &part == &parts.back();  // the parts before hold isolated vertices alone
         int chains = 0;
         for (std::int64_t k = 0; k < count;) {
             const Phases some = phases(static_cast<std::size_t>(std::min<std::int64_t>(count - k, LCL_CHAIN)), input, part, touched);
@@ -54,8 +56,8 @@ bool DeviceOperator::run_series(const SeriesSteps& steps, const Field& input, Fi
             run_series_chain(steps, k, some, part, {&input, begins_in_out ? &scratch : &out, begins_in_out ? &out : &scratch},
                              [&](std::size_t block, const auto& set) { prepare(part, some, k, block, set); });
             k += some.sweeps;
-            if (progress || ++chains % chains_in_flight == 0) context_->finish();
-            if (progress && !progress(k)) return false;
+            if (tells || ++chains % chains_in_flight == 0) context_->finish();
+            if (tells && !progress(k)) return false;
         }
     }
     return true;

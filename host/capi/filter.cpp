@@ -49,7 +49,13 @@ lcl_status filter(lcl_operator A, lcl_field M, const Options& options, lcl_field
     refuse_ghosts(A->system->plan());
     const Polynomial p = polynomial(options);
     const Transform transform = transform_after(p, transform_of(M, "M"));
-    filter_field(*A->system, p, M->field, out->field, inner_progress(options.progress, options.progress_user));
+    if (options.progress == nullptr) {
+        filter_field(*A->system, p, M->field, out->field);
+    } else {  // a filter that is cancelled leaves `out` as it was
+        Field& result = A->system->work_field(LimitSystem::Purpose::right, M->field.channels(), M->field.real());
+        filter_field(*A->system, p, M->field, result, inner_progress(options.progress, options.progress_user));
+        std::swap(out->field, result);
+    }
     out->transform = transform;
     return LCL_OK;
 }

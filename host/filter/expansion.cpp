@@ -45,7 +45,7 @@ void filter_host(LimitSystem& system, const Polynomial& p, const double* x, std:
     upload_rows(plan, transform, {x, stride}, input);
     filter_field(system, p, input, result, progress);
     std::vector<double> kept = kept_rows(plan, x, stride, channels);
-    for (double& value : kept) value *= p.at_zero;
+    for (double& value : kept) value = p.at_zero == 0 ? 0 : value * p.at_zero;  // isolated vertices may be infinitely far away
     download_rows(plan, transform_after(p, transform), result, {out, out_stride});
     restore_rows(plan, kept, channels, out, out_stride);
 }

@@ -89,29 +89,37 @@ private:
     void make_frame(int step) {
         if (options_.path == MorphPath::linear) return mix((step + 1.0) / options_.frames);
         const int m = entry(options_.m, step);
-        if (options_.path == MorphPath::even) even_step(m, 1 - (step + 1.0) / options_.frames);
-        else morph_field(system_, m, entry(options_.rho, step), *target_, *difference_, *frame_);
+        if (options_.path == MorphPath::even) fixed_share_ *= even_step(m, 1 - (step + 1.0) / options_.frames);
+        else {
+            morph_field(system_, m, entry(options_.rho, step), *target_, *difference_, *frame_);
+            fixed_share_ *= entry(options_.rho, step);
+        }
         download_rows(plan_, transform_, *frame_, {points_.data(), static_cast<std::size_t>(channels_)});
+        for (Index row = 0; row < plan_.fixed.end_row(); ++row) mix(plan_.vertex_of_row[row], fixed_share_);
     }
 
     // rho_k = min(1, (1 - (k+1)/N) |Q_0 - to|_D / |Y_k|_D), Y_k = D (Q_k - to); 0 where Y_k = 0
-    void even_step(int m, double share) {
+    double even_step(int m, double share) {
         if (m > most_factored) filter_field(system_, denoiser(m, 1, true), *difference_, *frame_), std::swap(*difference_, *frame_);
         const SeriesSteps steps = m > most_factored ? SeriesSteps{SeriesThird::older, {{1, 0, 0}}, {}, 0} : morph_steps(m, 1);
         const std::vector<SeriesSums> sums = A_.series_with_sums(steps, *difference_, *frame_, scratch());
         std::swap(*difference_, *frame_);
         double square = 0;
         for (int c = 0; c < std::min(channels_, 3); ++c) square += sums.back().square[c];
-        const double norm = std::sqrt(square);
-        A_.morph_blend(norm > 0 ? std::min(1.0, share * first_norm_ / norm) : 0.0, *target_, *difference_, *frame_);
+        const double norm = std::sqrt(square), rho = norm > 0 ? std::min(1.0, share * first_norm_ / norm) : 0.0;
+        A_.morph_blend(rho, *target_, *difference_, *frame_);
+        return rho;
     }
 
     void mix(double share) {
-        for (std::size_t v = 0; v < static_cast<std::size_t>(plan_.vertex_count); ++v)
-            for (int c = 0; c < channels_; ++c) {
-                const double begin = from_[v * stride_ + c];
-                points_[v * channels_ + c] = begin + share * (to_[v * stride_ + c] - begin);
-            }
+        for (Index v = 0; v < plan_.vertex_count; ++v) mix(v, 1 - share);
+    }
+    /// to + share (from - to)
+    void mix(Index v, double share) {
+        for (int c = 0; c < channels_; ++c) {
+            const double end = to_[v * stride_ + c];
+            points_[static_cast<std::size_t>(v) * channels_ + c] = end + share * (from_[v * stride_ + c] - end);
+        }
     }
 
     Field& scratch() { return system_.work_field(LimitSystem::Purpose::scratch, channels_, difference_->real()); }
@@ -127,6 +135,7 @@ private:
     std::vector<double> points_;
     std::optional<Field> target_, difference_, frame_;
     double first_norm_ = 0;
+    double fixed_share_ = 1;  // of Q_0 - to in rows with A x = x, which are made here: to the bit where both meshes have the same point, isolated ones anywhere
 };
 
 }  // namespace

@@ -9,7 +9,7 @@
 namespace lcl {
 namespace {
 
-constexpr double no_volume = 1e-9;  // of the diagonal's cube: rounding, or a sheet folded on itself
+constexpr double no_volume = 1e-9;  // of the cube of the component's diagonal: rounding, or a sheet folded on itself
 constexpr double reached = 1e-10;   // of the volume: what is left of the difference
 
 class Volumes {
@@ -50,6 +50,20 @@ public:
         return volumes;
     }
 
+    /// The least volume of each component that is one: some part of its bounding box.
+    std::vector<double> least(const std::vector<double>& positions) const {
+        std::vector<Box> boxes(count_);
+        for (std::size_t v = 0; v < component_.size(); ++v)
+            for (int c = 0; c < 3 && component_[v] >= 0; ++c) {
+                Box& box = boxes[component_[v]];
+                box.low[c] = std::min(box.low[c], positions[3 * v + c]);
+                box.high[c] = std::max(box.high[c], positions[3 * v + c]);
+            }
+        std::vector<double> least;
+        for (const Box& box : boxes) least.push_back(no_volume * std::pow(box.diagonal(), 3));
+        return least;
+    }
+
 private:
     const PolygonMesh& mesh_;
     const Topology& topology_;
@@ -62,6 +76,7 @@ double root_near_zero(double c0, double c1, double c2, double c3) {
     double t = 0;
     for (int step = 0; step < 60; ++step) {
         const double value = c0 + t * (c1 + t * (c2 + t * c3)), slope = c1 + t * (2 * c2 + t * 3 * c3);
+        if (value == 0) break;
         const double next = t - value / slope;
         if (next == t) break;
         t = next;
@@ -84,7 +99,7 @@ std::vector<double> component_volumes(const PolygonMesh& mesh, const Topology& t
     return Volumes(mesh, topology).measure(positions);
 }
 
-// The volume is a cubic polynomial of the distance: four values give it.
+// The volume is a cubic polynomial of the distance: four values give it, at distances of the component's own size, so that it holds as far as that is changed.
 std::vector<std::string> match_volumes(const PolygonMesh& mesh, const Topology& topology, const std::vector<double>& before,
                                        const std::vector<std::uint8_t>& is_fixed, std::vector<double>& positions) {
     const Volumes volumes(mesh, topology);
@@ -95,7 +110,7 @@ std::vector<std::string> match_volumes(const PolygonMesh& mesh, const Topology& 
         for (double& component : directions[v]) component = length > 0 ? component / length : 0;
     }
     std::vector<double> unit(volumes.count());
-    for (std::size_t i = 0; i < unit.size(); ++i) unit[i] = std::cbrt(std::fabs(now[i])) * 0.01;
+    for (std::size_t i = 0; i < unit.size(); ++i) unit[i] = std::cbrt(std::fabs(now[i]));
     const auto at = [&](double factor) {
         std::vector<double> distances = unit;
         for (double& distance : distances) distance *= factor;
@@ -109,10 +124,10 @@ std::vector<std::string> match_volumes(const PolygonMesh& mesh, const Topology& 
     }
     const std::vector<double> candidate = moved(positions, directions, volumes, distances), found = volumes.measure(candidate);
     const std::vector<Index> first = volumes.first_vertices();
-    const double diagonal = bounding_box_diagonal(mesh, topology), least = no_volume * diagonal * diagonal * diagonal;
+    const std::vector<double> least_before = volumes.least(before), least = volumes.least(positions);
     std::vector<std::string> notes;
     for (std::size_t i = 0; i < unit.size(); ++i) {
-        const bool is_volume = std::fabs(wanted[i]) > least && now[i] * wanted[i] > 0;
+        const bool is_volume = std::fabs(wanted[i]) > least_before[i] && std::fabs(now[i]) > least[i] && (now[i] > 0) == (wanted[i] > 0);
         if (is_volume && std::fabs(found[i] - wanted[i]) <= reached * std::fabs(wanted[i])) continue;
         distances[i] = 0;
         notes.push_back("the volume of the component of vertex " + std::to_string(first[i]) + " was not kept: " +

@@ -91,6 +91,8 @@ public:
         x_ = values_for(plan_.vertex_count, channels_, 2);
         ax_ = host_apply(plan_, x_, channels_);
         limit();
+        series();
+        morphs();
         if (real_ == Real::wide) residual();
         else sweeps(), gauss_seidel(), conjugate_gradients(), transfers(), single_rows();
         return passed_;
@@ -212,6 +214,69 @@ private:
         const std::vector<double> handed_on = download(r);
         for (std::size_t i = 0; i < expected.size(); ++i) expected[i] = x_[i] + handed_on[i];
         compare("lcl_correct", download(x), expected, tolerance_);
+        A_.context().finish();
+    }
+
+    /// y of every step, x_ first.
+    std::vector<std::vector<double>> expected_steps(const SeriesSteps& steps) const {
+        std::vector<std::vector<double>> y{x_};
+        for (std::int64_t k = 0; k < steps.count(); ++k) {
+            const std::vector<double> ay = host_apply(plan_, y[k], channels_), &third = steps.third == SeriesThird::input || k == 0 ? x_ : y[k - 1];
+            std::vector<double> next(x_.size());
+            for (std::size_t i = 0; i < next.size(); ++i) next[i] = steps[k].a * y[k][i] + steps[k].b * ay[i] + steps[k].c * third[i];
+            y.push_back(std::move(next));
+        }
+        return y;
+    }
+
+    void series() {
+        const Field x = field(x_, real_);
+        Field out = field(m_, real_), scratch = field(m_, real_);
+        const SeriesSteps horner{SeriesThird::input, {{1.5, -0.5, 0}, {1, -1, 0.25}, {0.5, 0.5, -0.5}}, {}, 0};
+        A_.series(horner, x, out, scratch);
+        compare("lcl_series", download(out), expected_steps(horner).back(), 4 * tolerance_);
+        const SeriesSteps filter{SeriesThird::older, {{0, 1, 0}, {0.5, -1, 0}, {1, -1, 1}}, {}, 0};
+        A_.series(filter, x, out, scratch);
+        const std::vector<std::vector<double>> expected = expected_steps(filter);
+        compare("lcl_filter", download(out), expected.back(), 4 * tolerance_);
+        const std::vector<SeriesSums> sums = A_.series_with_sums(filter, x, out, scratch);
+        compare("lcl_series_sums", download(out), expected.back(), 4 * tolerance_);
+        double weight = 0;  // sums are compared relative to the sum of the scaling
+        for (const double d : plan_.scaling) weight += d;
+        std::vector<double> found_sums, expected_sums;
+        for (std::size_t k = 0; k < sums.size(); ++k)
+            for (int c = 0; c < channels_; ++c) {
+                found_sums.insert(found_sums.end(), {sums[k].linear[c] / weight, sums[k].square[c] / weight});
+                double linear = 0, square = 0;
+                for (Index row = 0; row < plan_.row_count; ++row) {
+                    const double value = expected[k + 1][static_cast<std::size_t>(row) * channels_ + c], weighted = plan_.scaling[row] / weight * value;
+                    linear += weighted;
+                    square += weighted * value;
+                }
+                expected_sums.insert(expected_sums.end(), {linear, square});
+            }
+        compare("lcl_series_sums (sums)", found_sums, expected_sums, 4 * (A_.context().device().has_double ? tolerance_ : 64 * std::ldexp(1, -24)));
+    }
+
+    void morphs() {
+        const SeriesSteps steps{SeriesThird::older, {{0, 0.75, 0}, {0.5, -1, 0}, {1, -1, 1}}, {}, 0};
+        const Field target = field(m_, real_);
+        Field difference = field(x_, real_), scratch = field(x_, real_), frame = field(x_, real_);
+        const auto frame_of = [&](std::vector<double> values) {
+            for (std::size_t i = 0; i < values.size(); ++i) values[i] += m_[i];
+            return values;
+        };
+        A_.morph(steps, target, difference, scratch, frame);
+        std::vector<double> expected = expected_steps(steps).back();
+        compare("lcl_morph", download(difference), expected, 4 * tolerance_);
+        compare("lcl_morph (frame)", download(frame), frame_of(expected), 4 * tolerance_);
+        A_.morph_blend(0.5, target, difference, frame);
+        for (double& value : expected) value *= 0.5;
+        compare("lcl_morph_blend", download(difference), expected, 4 * tolerance_);
+        compare("lcl_morph_blend (frame)", download(frame), frame_of(expected), 4 * tolerance_);
+        A_.subtract(field(x_, real_), target, difference);
+        for (std::size_t i = 0; i < expected.size(); ++i) expected[i] = x_[i] - m_[i];
+        compare("lcl_morph_difference", download(difference), expected, tolerance_);
         A_.context().finish();
     }
 
