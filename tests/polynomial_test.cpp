@@ -217,7 +217,7 @@ TEST_CASE("a strength from 0 to 1 smooths more and more", "[polynomial]") {
     }
     CHECK(denoise_settings(0).k == 0);
     CHECK((denoise_settings(0.5).m == 2 && denoise_settings(0.5).k == 3));
-    CHECK((denoise_settings(1).m == 1 && denoise_settings(1).k == 10));
+    CHECK((denoise_settings(1).m == 1 && denoise_settings(1).k == 100));
     CHECK((denoise_settings(0.54).m == 2 && denoise_settings(0.54).k == 3));  // the nearest tenth
     for (const double bad : {-0.01, 1.01, std::nan("")}) refused([&] { denoise_settings(bad); }, "it goes from 0 to 1");
 }
