@@ -1022,7 +1022,7 @@ TEST_CASE("filters of real meshes", "[cli][meshes]") {
     const Folder folder;
     const std::string name = GENERATE(as<std::string>(), "noisy/trim-star_noisy.obj.gz", "noisy/Fandisk0.7_Noisy.obj.gz", "morph/cylinder-1.obj");
     const std::string path = (fs::path(meshes) / name).string();
-    if (!fs::exists(path)) return;
+    REQUIRE(fs::exists(path));
     const Plain A(path, scheme_of(LCL_SCHEME_LOOP));
     const Outcome denoise = run(folder, "denoise '" + path + "' -o out.obj");
     INFO(name << "\n" << denoise.err);
@@ -1042,7 +1042,7 @@ TEST_CASE("morphs of real pairs", "[cli][meshes]") {
     const std::string ending = name == "morph/cheburashka-0" ? ".obj.gz" : ".obj";
     const std::string from = (fs::path(meshes) / (name + "1" + ending)).string();
     const std::string to = (fs::path(meshes) / (name + (ending == ".obj" ? "3" : "4") + ending)).string();
-    if (!fs::exists(from) || !fs::exists(to)) return;
+    REQUIRE((fs::exists(from) && fs::exists(to)));
     const Plain A(from, scheme_of(LCL_SCHEME_LOOP)), B(to, scheme_of(LCL_SCHEME_LOOP));
     const Outcome outcome = run(folder, "morph '" + from + "' '" + to + "' -o f%d.obj --even --frames 5");
     INFO(name << "\n" << outcome.err);

@@ -101,14 +101,8 @@ Buffer DeviceOperator::upload_doubled(const Array<Index>& rows, const char* what
 }
 
 Buffer DeviceOperator::upload_reals(const std::vector<double>& values, Real real, const char* what) {
-    if (is_double(*context_, real)) return upload(values.data(), values.size() * sizeof(double), what);
-    std::vector<float> narrow;
-    narrow.reserve(values.size() * (real == Real::wide ? 2 : 1));
-    for (const double value : values) {
-        narrow.push_back(static_cast<float>(value));
-        if (real == Real::wide) narrow.push_back(static_cast<float>(value - narrow.back()));  // the low half of a pair
-    }
-    return upload(narrow.data(), narrow.size() * sizeof(float), what);
+    const std::vector<unsigned char> bytes = real_bytes(*context_, real, values);
+    return upload(bytes.data(), bytes.size(), what);
 }
 
 const Buffer& DeviceOperator::weights(Real real, bool weighted_rows) {

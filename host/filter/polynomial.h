@@ -33,7 +33,7 @@ struct Polynomial {
 Polynomial sum_of_terms(Series series, int first, int last);
 
 /// sum w_i B^i A + r B^count (representation; r the remainder), or sum w_i B^i (interpolation, no remainder). InvalidArgument for no or too many weights, or
-/// weights that are not finite. Horner form, its leading zeros left out.
+/// weights that are not finite or beyond 10^30. Horner form, its leading zeros left out.
 Polynomial equaliser(Series series, const std::vector<double>& weights, double remainder);
 
 /// D^k A, or D^k where `plain`, D = 1 - B^(m+1) (eq. 8): k (m + 1) + 1 passes, plain k (m + 1). InvalidArgument for m or k out of 0 .. most_terms.

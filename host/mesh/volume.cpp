@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "host/mesh/volume.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "host/mesh/box.h"

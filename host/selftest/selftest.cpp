@@ -6,7 +6,7 @@
 
 #include "host/apply/row_transfer.h"
 #include "host/apply/transfer.h"
-#include "host/filter/noise.h"
+#include "host/apply/noise.h"
 #include "host/solve/limit_system.h"
 
 namespace lcl {

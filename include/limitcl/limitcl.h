@@ -21,7 +21,8 @@
  * - Handles are reference counted: _create makes one reference, _retain adds one, _release drops one (NULL is allowed). What a handle needs it keeps alive.
  * - Arrays that a caller passes in are copied before the call returns; outputs go to the caller's memory. Strings that the library gives out live as long as
  *   their handle, lcl_last_error()'s until the next failing call of the thread.
- * - Options structs begin with struct_size: start from LCL_..._INIT; every other zero means the default. NULL options mean all defaults.
+ * - Options structs begin with struct_size: start from LCL_..._INIT. Zeros mean the default, but for members whose comment says what the _INIT holds, where 0 is
+ *   a value like any other. NULL options mean all defaults.
  * - One context is one device and one thread at a time. Different contexts are independent, also on one device; operators on several devices run at once.
  *   A mesh may be read by several threads; functions that change it need it alone.
  * - Indices are zero-based. At most 2^31 - 1 of anything.
@@ -547,7 +548,8 @@ LCL_API lcl_status lcl_operator_create_features(lcl_context context, lcl_mesh me
  *
  * Functions come in two kinds: through host memory (n x channels, rows `stride` values apart, 0: channels; `out` may be the input), computed in double or pairs
  * of floats under LCL_PRECISION_MIXED and LCL_PRECISION_DOUBLE; and on fields that stay on the device (which must differ), computed in the fields' own type,
- * enqueued without waiting. Corners, isolated vertices and those outside the subset have A x = x: they are kept, or become 0 in terms that do not hold them.
+ * enqueued without waiting (lcl_spectrum_field waits, and so does all that is given a progress
+ * callback or more than 1024 passes). LCL_PRECISION_DOUBLE is refused on devices without double precision (LCL_ERROR_UNSUPPORTED). Corners, isolated vertices and those outside the subset have A x = x: they are kept, or become 0 in terms that do not hold them.
  * They need no inverse: singular operators do as well. Operators with ghosts are refused (LCL_ERROR_UNSUPPORTED). */
 
 /** Passes done of all. Return 0 to cancel (LCL_ERROR_CANCELLED, outputs are as before), anything else to go on. */
@@ -571,7 +573,8 @@ typedef struct lcl_expand_options {
 #define LCL_EXPAND_OPTIONS_INIT \
     { (uint32_t)sizeof(lcl_expand_options), LCL_SERIES_REPRESENTATION, LCL_PRECISION_MIXED, 0, 0, NULL, 0, 1.0, NULL, NULL }
 
-/** A weighted sum of terms. One pass a term up to the last one (one more for the representation series), none stored; three fields. */
+/** A weighted sum of terms; out in the units of M, terms that leave out the first one round the origin. Terms i to j take j + 1 passes, n weights n at most; one less
+ * in the interpolation series. No term is stored: three fields. */
 LCL_API lcl_status lcl_expand(lcl_operator A, const double* M, size_t stride, int32_t channels, const lcl_expand_options* options, double* out, size_t out_stride);
 LCL_API lcl_status lcl_expand_field(lcl_operator A, lcl_field M, const lcl_expand_options* options, lcl_field out);
 
@@ -598,7 +601,7 @@ typedef struct lcl_denoise_options {
 LCL_API lcl_status lcl_denoise(lcl_operator A, const double* M, size_t stride, int32_t channels, const lcl_denoise_options* options, double* out,
                                size_t out_stride);
 LCL_API lcl_status lcl_denoise_field(lcl_operator A, lcl_field M, const lcl_denoise_options* options, lcl_field out);
-/** m and k in plain words: strength 0 (k = 0: nothing but A, or nothing at all where plain) to 1 (m = 1, k = 100), 0.5 the default m = 2, k = 3; the more, the
+/** m and k in plain words, by tenths: strength 0 (k = 0: nothing but A, or nothing at all where plain) to 1 (m = 1, k = 100), 0.5 the default m = 2, k = 3; the more, the
  * smoother. For noise of 0.1 mean edge lengths about 0.6, of 0.2 to 0.3 0.8 to 0.9, of more 0.9 to 1. */
 LCL_API lcl_status lcl_denoise_settings(double strength, int32_t* m, int32_t* k);
 /** Moves the points of every closed component along their normals (area-weighted), all by one distance, until the component encloses the volume that it had
@@ -649,11 +652,12 @@ typedef int32_t (*lcl_frame_callback)(void* user, int32_t frame, double* points)
 
 /** Q_0 = from; Q_(k + 1) = to + rho D (Q_k - to) (mesh expansion paper, eq. 9; source slip: Q_k tends to `to` for rho < 1 only, for rho = 1 to a translation of
  * it). EVEN: rho_k = min(1, (1 - (k + 1)/N) |Q_0 - to|_D / |D (Q_k - to)|_D) over x, y, z, the last 0; where the 1 cuts, early steps are longer. The flat middle
- * shape of a mirror pair is not avoided. m + 1 passes a frame. A belongs to `from` or any mesh with its faces. */
+ * shape of a mirror pair is not avoided. m + 1 passes a frame. from, to: n x channels, rows `stride` values apart (0: channels), model units. A belongs to `from` or any
+ * mesh with its faces. LCL_ERROR_INVALID_ARGUMENT for options out of range, and for EVEN on rows without D; LCL_ERROR_BAD_INPUT for values that are not finite. */
 LCL_API lcl_status lcl_morph(lcl_operator A, const double* from, const double* to, size_t stride, int32_t channels, const lcl_morph_options* options,
                              lcl_frame_callback frame, void* user);
 /** One step on fields, for frames that stay on the device: difference becomes rho D difference, and frame to + difference. The first difference comes from
- * lcl_field_subtract(from, to, difference). */
+ * lcl_field_subtract(from, to, difference); LCL_ERROR_INVALID_ARGUMENT for another one, and for fields of different operators, shapes or types. */
 LCL_API lcl_status lcl_morph_field(lcl_operator A, int32_t m, double rho, lcl_field to, lcl_field difference, lcl_field frame);
 /** difference = a - b, of one operator, centre and scale (lcl_field_match); difference may be neither. */
 LCL_API lcl_status lcl_field_subtract(lcl_field a, lcl_field b, lcl_field difference);
@@ -668,7 +672,7 @@ typedef struct lcl_texture_options {
     uint32_t seed;
     const double* colours; /**< colour_count x (red, green, blue) from 0 to 1; NULL: five of marble */
     size_t colour_count;
-    lcl_precision precision; /**< of the noise and of the solves */
+    lcl_precision precision; /**< of the noise and of the solves; points are always taken to the limit in double or pairs of floats */
     double tolerance;        /**< of the solves, relative to the range of the noise; 0: 1e-6 */
     int32_t max_iterations;  /**< 0: 200 */
     int32_t keep_going;      /**< 1: take what the solves give although A is singular, indefinite or they did not converge; the status says so */
