@@ -169,9 +169,9 @@ void DeviceOperator::sweep(const Sweep& s, const Field& m, const Field& x, const
             launch(*context_, norm_kernel("relax", "lcl_relax", x, k), size(part), part.first_block, blocks_, runs_, weights(x.real(), false), indices_,
                    weighted_offsets_, weighted_indices_, weights(x.real(), true), a, b, b_jacobi, m.buffer(k), x.buffer(k), y.buffer(k), norms);
         else
-            launch(*context_, norm_kernel("relax", "lcl_relax_three_term", x, k), size(part), part.first_block, blocks_, runs_, weights(x.real(), false), indices_,
-                   weighted_offsets_, weighted_indices_, weights(x.real(), true), a, b, b_jacobi, c, m.buffer(k), x.buffer(k), d->buffer(k), y.buffer(k),
-                   norms);
+            launch(*context_, norm_kernel("relax", "lcl_relax_three_term", x, k), size(part), part.first_block, blocks_, runs_, weights(x.real(), false),
+                   indices_, weighted_offsets_, weighted_indices_, weights(x.real(), true), a, b, b_jacobi, c, m.buffer(k), x.buffer(k), d->buffer(k),
+                   y.buffer(k), norms);
     }
 }
 

@@ -112,11 +112,12 @@ void DeviceOperator::read_series_sums(const Field& like, const Part& part, Index
 void DeviceOperator::morph(const SeriesSteps& steps, const Field& target, Field& difference, Field& scratch, Field& frame) {
     const std::int64_t count = steps.count();
     const bool ends_in_scratch = count % 2 == 1;
-    run_series(steps, difference, ends_in_scratch ? scratch : difference, ends_in_scratch ? difference : scratch, {}, [&](const Part&, const Phases& phases, std::int64_t first, std::size_t b, const auto& set) {
-        const bool ends = first + phases.sweeps == count;
-        const auto last = static_cast<cl_int>(ends ? (first == 0 ? 0 : 1) + phases.sweeps - 1 : -1);
-        set(kernel("morph", "lcl_morph", difference, b), last, target.buffer(b), frame.buffer(b));
-    });
+    run_series(steps, difference, ends_in_scratch ? scratch : difference, ends_in_scratch ? difference : scratch, {},
+               [&](const Part&, const Phases& phases, std::int64_t first, std::size_t b, const auto& set) {
+                   const bool ends = first + phases.sweeps == count;
+                   const auto last = static_cast<cl_int>(ends ? (first == 0 ? 0 : 1) + phases.sweeps - 1 : -1);
+                   set(kernel("morph", "lcl_morph", difference, b), last, target.buffer(b), frame.buffer(b));
+               });
     if (ends_in_scratch) std::swap(difference, scratch);
 }
 

@@ -33,7 +33,8 @@ std::string corners_text(const PolygonMesh& mesh, Index f) {
 }
 
 void require_same_count(const char* what, Index a, Index b) {
-    if (a != b) throw BadInput("the meshes differ: one has " + std::to_string(a) + " " + what + ", the other " + std::to_string(b) + ": they must have the same faces");
+    if (a != b)
+        throw BadInput("the meshes differ: one has " + std::to_string(a) + " " + what + ", the other " + std::to_string(b) + ": they must have the same faces");
 }
 
 void require_same_faces(const PolygonMesh& a, const PolygonMesh& b) {

@@ -10,8 +10,8 @@ namespace lcl {
 
 enum class Series { representation, interpolation };  // order of lcl_series
 
-constexpr int most_terms = 100000;   // of a sum, m and k: beyond, nothing but rounding is left
-constexpr int most_factored = 16;    // m up to which D is a product of factors, whose rounding grows like m; beyond, D is summed up as Horner does
+constexpr int most_terms = 100000;  // of a sum, m and k: beyond, nothing but rounding is left
+constexpr int most_factored = 16;   // m up to which D is a product of factors, whose rounding grows like m; beyond, D is summed up as Horner does
 
 /// p(B) x: stages one after the other, each `times` times.
 struct Polynomial {

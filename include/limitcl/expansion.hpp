@@ -62,9 +62,9 @@ enum class MorphPath {
 
 struct MorphOptions {
     MorphPath path = MorphPath::recursion;
-    int frames = 10;                 ///< N: frames 0 (the start) to N are given out
-    std::vector<std::int32_t> m;     ///< of the step to frame 1, 2, ..; the last is repeated; empty: 2
-    std::vector<double> rho;         ///< likewise, above 0 and up to 1; empty: 0.5. Not with MorphPath::even
+    int frames = 10;              ///< N: frames 0 (the start) to N are given out
+    std::vector<std::int32_t> m;  ///< of the step to frame 1, 2, ..; the last is repeated; empty: 2
+    std::vector<double> rho;      ///< likewise, above 0 and up to 1; empty: 0.5. Not with MorphPath::even
     Precision precision = Precision::mixed;
 };
 
@@ -142,9 +142,9 @@ std::vector<double> filter(const LimitOperator& A, ArrayView<double> M, int chan
 
 }  // namespace detail
 
-/// A weighted sum of terms of M, vertex_count x channels, positions first, model units; so is the result. A term beyond the first, or a band, is a field of vectors
-/// round the origin. One pass a term up to the last one. Errors of all filters: LCL_ERROR_INVALID_ARGUMENT, LCL_ERROR_BAD_INPUT (values that are not finite),
-/// LCL_ERROR_CANCELLED, LCL_ERROR_MEMORY, LCL_ERROR_UNSUPPORTED (ghosts; double precision on a device without).
+/// A weighted sum of terms of M, vertex_count x channels, positions first, model units; so is the result. A term beyond the first, or a band, is a field of
+/// vectors round the origin. One pass a term up to the last one. Errors of all filters: LCL_ERROR_INVALID_ARGUMENT, LCL_ERROR_BAD_INPUT (values that are not
+/// finite), LCL_ERROR_CANCELLED, LCL_ERROR_MEMORY, LCL_ERROR_UNSUPPORTED (ghosts; double precision on a device without).
 [[nodiscard]] inline std::vector<double> expand(const LimitOperator& A, ArrayView<double> M, int channels = 3, const Terms& terms = {},
                                                 Precision precision = Precision::mixed, const PassProgress& progress = {}) {
     return detail::filter(A, M, channels, detail::to_c(terms), precision, progress, lcl_expand);
