@@ -91,7 +91,7 @@ inline lcl_scheme_options classic_doo_sabin() {
 
 /// Closed and smooth: A is self-adjoint under D as a whole.
 inline const std::vector<Subject>& closed_subjects() {
-    static const auto& all = *new std::vector<Subject>([] {
+    static const std::vector<Subject> all = [] {
         const shapes::Shape polygons = shapes::rough(shapes::polygons_mixed(60, 3), 0.05, 1);
         std::vector<double> ratios;
         for (int v = 0; v < polygons.mesh.vertex_count; ++v) ratios.push_back(v % 4 * 0.25);
@@ -107,13 +107,13 @@ inline const std::vector<Subject>& closed_subjects() {
         list.emplace_back("two components and an isolated vertex", shapes::with_isolated_vertex(shapes::rough(shapes::two_components(), 0.1, 7), 4),
                           scheme(LCL_SCHEME_LOOP));
         return list;
-    }());
+    }();
     return all;
 }
 
 /// Boundaries, creases, corners, darts, isolated vertices, a subset.
 inline const std::vector<Subject>& open_subjects() {
-    static const auto& all = *new std::vector<Subject>([] {
+    static const std::vector<Subject> all = [] {
         const shapes::Shape grid = shapes::rough(shapes::grid_with_creases(), 0.1, 2);
         std::vector<double> ratios;
         for (int v = 0; v < grid.mesh.vertex_count; ++v) ratios.push_back(v % 3 * 0.3);
@@ -130,7 +130,7 @@ inline const std::vector<Subject>& open_subjects() {
         list.emplace_back("classic Doo-Sabin, creases", grid, classic_doo_sabin());
         list.emplace_back("a subset", torus, scheme(LCL_SCHEME_CATMULL_CLARK), std::vector<double>{}, subset);
         return list;
-    }());
+    }();
     return all;
 }
 
@@ -138,13 +138,6 @@ inline std::vector<const Subject*> all_subjects() {
     std::vector<const Subject*> all;
     for (const Subject& subject : closed_subjects()) all.push_back(&subject);
     for (const Subject& subject : open_subjects()) all.push_back(&subject);
-    return all;
-}
-
-/// Those on which energies and |.|_D are compared: D is known at all of their vertices.
-inline std::vector<const Subject*> weighed_subjects() {
-    std::vector<const Subject*> all;
-    for (const Subject& subject : closed_subjects()) all.push_back(&subject);
     return all;
 }
 

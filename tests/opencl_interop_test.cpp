@@ -335,3 +335,17 @@ TEST_CASE("queues have profiling if it was asked for", "[interop][capi][device]"
     cl_ulong start = 0;
     CHECK((clGetEventProfilingInfo(marker.event, CL_PROFILING_COMMAND_START, sizeof start, &start, nullptr) == CL_SUCCESS) == profiling);
 }
+
+TEST_CASE("a context of the library's own waits for its work when it goes", "[interop][capi][device]") {
+    Context context = open_context();
+    const shapes::Shape shape = shapes::torus_quads(90, 80);
+    Operator A = make_operator(context.get(), make_mesh(shape).get());
+    FieldHandle x = make_field(A.get(), shape.mesh.positions, LCL_PRECISION_SINGLE), y = make_field(A.get(), 3, LCL_PRECISION_SINGLE);
+    lcl_denoise_options options = LCL_DENOISE_OPTIONS_INIT;
+    options.k = 330;  // less than a thousand passes, which are all put on the queue at once
+    succeed(lcl_denoise_field(A.get(), x.get(), &options, y.get()));
+    OwnedEvent done;
+    succeed(lcl_context_marker(context.get(), &done.event));
+    x.reset(), y.reset(), A.reset(), context.reset();
+    CHECK(done.is_complete());
+}

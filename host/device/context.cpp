@@ -71,6 +71,7 @@ std::shared_ptr<Context> Context::create(const DeviceInfo& device, const Context
     made->context_ = clCreateContext(properties, 1, &device.id, nullptr, nullptr, &code);
     check(code, "clCreateContext", "opening " + device.name);
     made->queue_ = create_queue(made->context_, device, options.profiling);
+    made->owns_queue_ = true;
     made->transfer_queue_ = create_queue(made->context_, device, options.profiling);
     made->programs_ = std::make_unique<Programs>(made->context_, made->device_, options.cache_directory);
     return made;
@@ -95,7 +96,11 @@ std::shared_ptr<Context> Context::adopt(cl_context context, cl_command_queue que
     return made;
 }
 
+// What is left on the queues is waited for: a driver that still compiles a kernel for it (PoCL) would abort where the program ends. A caller's own queue may wait
+// for what the caller has yet to do, and is the caller's to finish.
 Context::~Context() {
+    if (owns_queue_ && queue_) clFinish(queue_);
+    if (owns_queue_ && transfer_queue_) clFinish(transfer_queue_);
     programs_.reset();
     if (transfer_queue_) clReleaseCommandQueue(transfer_queue_);
     if (queue_) clReleaseCommandQueue(queue_);

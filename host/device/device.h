@@ -166,6 +166,7 @@ private:
     DeviceInfo device_;
     cl_context context_ = nullptr;
     cl_command_queue queue_ = nullptr, transfer_queue_ = nullptr;
+    bool owns_queue_ = false;
     std::unique_ptr<Programs> programs_;
     std::size_t allocated_bytes_ = 0;
 };
