@@ -69,7 +69,7 @@ class Surface:
 
     def distances(self, points, exact):
         """Exact: looks at more triangles until those left out are too far away to matter. Else at the six whose centres are nearest, which is right for most points."""
-        distances, todo, count = np.full(len(points), np.inf), np.arange(len(points)), 6
+        distances, todo, count = np.full(len(points), np.inf), np.arange(len(points)), 16 if exact else 6
         while len(todo):
             count = min(count, self.tree.n)
             to_centre, which = self.tree.query(points[todo], count)
@@ -77,7 +77,7 @@ class Surface:
             distances[todo] = found
             if not exact or count == self.tree.n:
                 break
-            todo, count = todo[to_centre[:, -1] - self.radius < found], 4 * count
+            todo, count = todo[to_centre[:, -1] - self.radius < found], 2 * count
         return distances
 
 
