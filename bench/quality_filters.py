@@ -42,6 +42,7 @@ def limitcl_methods(limitcl, quick):
         Method("limitcl denoise, no options", [setting()]),
         Method("limitcl denoise, D^k A", grid(smooth), kept),
         Method("limitcl denoise --plain, D^k", grid(smooth, "--plain"), kept),
+        Method("limitcl denoise --operator features, no more options", [setting("--operator", "features")]),
         Method("limitcl denoise --operator features", grid(features, "--operator", "features"), kept),
     ]
 
