@@ -42,6 +42,7 @@ def limitcl_methods(limitcl, quick):
         Method("limitcl denoise, no options", [setting()]),
         Method("limitcl denoise, D^k A", grid(smooth), kept),
         Method("limitcl denoise --plain, D^k", grid(smooth, "--plain"), kept),
+        Method("limitcl denoise --operator features, no more options", [setting("--operator", "features")]),
         Method("limitcl denoise --operator features", grid(features, "--operator", "features"), kept),
     ]
 
@@ -129,7 +130,8 @@ def bilateral_methods(quick):
     def setting(reach, range_sigma, steps):
         return f"reach {reach}, sigma {range_sigma}, {steps} + 20 steps", lambda points, faces: timed(bilateral_normals, points, faces, reach, range_sigma, steps)
 
-    return [Method("bilateral normals (NumPy)", [setting(*values) for values in itertools.product((1,) if quick else (1, 2), (0.35,) if quick else (0.35, 0.5), (10,) if quick else (10, 25))])]
+    values = [(1, 0.35, 10)] if quick else [(1, 0.35, 10), (1, 0.5, 10), (1, 0.5, 25), (2, 0.35, 10), (2, 0.35, 25), (2, 0.5, 10)]
+    return [Method("bilateral normals (NumPy)", [setting(*three) for three in values])]
 
 
 # ---------------------------------------------------------------- all

@@ -525,8 +525,8 @@ typedef struct lcl_feature_options {
     uint32_t struct_size;
     double angle_degrees;   /**< 0: 20. Angle between the tangent planes at an edge's ends at which its weight has fallen to 1/e, at most 180 */
     double diagonal_factor; /**< 0: 2.5. D_ii = factor x sum of the weights at i; above 2, so that eigenvalues lie in [1 - 2 / factor, 1] */
-    int32_t smoothing;      /**< 0: 3; below 0: none; at most 1000. Applications of E - (E - A)^3, A of the default scheme, to the points from which the tangent
-                                 planes are taken */
+    int32_t smoothing;      /**< 0: 3; below 0: none; at most 1000. Applications of (E - (E - A)^3) A, A of the default scheme, to the points from which the
+                                 tangent planes are taken */
     const int32_t* subset;  /**< NULL, or the vertices that the filter may move: the others keep their points (identity rows) */
     size_t subset_count;
 } lcl_feature_options;
