@@ -33,8 +33,8 @@ def limitcl_methods(limitcl, quick):
     def grid(pairs, *more):
         return [setting("--m", str(m), "--k", str(k), *more) for m, k in pairs]
 
-    smooth = [(1, 6), (2, 6)] if quick else [(0, 2), (0, 4), (1, 3), (1, 6), (1, 12), (1, 24), (2, 6), (2, 24)]
-    features = [(1, 12), (1, 50)] if quick else [(1, 6), (1, 12), (1, 25), (1, 50), (1, 100), (2, 50)]
+    smooth = [(1, 6), (2, 6)] if quick else [(0, 2), (0, 4), (1, 6), (1, 12), (1, 25), (1, 50), (1, 100), (2, 50), (2, 200)]
+    features = [(1, 12), (1, 50)] if quick else [(1, 12), (1, 25), (1, 50), (1, 100), (1, 200), (2, 50), (2, 200)]
     def kept(words):
         return setting(*words.split(), "--keep-volume")
 
@@ -42,6 +42,7 @@ def limitcl_methods(limitcl, quick):
         Method("limitcl denoise, no options", [setting()]),
         Method("limitcl denoise, D^k A", grid(smooth), kept),
         Method("limitcl denoise --plain, D^k", grid(smooth, "--plain"), kept),
+        Method("limitcl denoise --operator features, no more options", [setting("--operator", "features")]),
         Method("limitcl denoise --operator features", grid(features, "--operator", "features"), kept),
     ]
 
@@ -64,8 +65,9 @@ def pymeshlab_methods(quick):
     taubin = [setting(f"lambda 0.5, mu {mu}, {n} steps", "apply_coord_taubin_smoothing", lambda_=0.5, mu=mu, stepsmoothnum=n)
               for mu, n in itertools.product((-0.53, -0.51), (20,) if quick else (5, 10, 20, 40, 80))]
     hc = [setting(f"{n} times", "apply_coord_hc_laplacian_smoothing", times=n) for n in ((2,) if quick else (1, 2, 4, 8, 16))]
-    two_step = [setting(f"threshold {angle}, {n} + {n} steps, {times} times", "apply_coord_two_steps_smoothing", times=times, stepsmoothnum=3, normalthr=angle, stepnormalnum=n,
-                        stepfitnum=n) for angle, n, times in itertools.product((60,) if quick else (20, 40, 60), (20,), (3,) if quick else (1, 3, 6))]
+    two_step = [setting(f"threshold {angle}, {rounds} x ({normals} + {fits}) steps", "apply_coord_two_steps_smoothing", stepsmoothnum=rounds, normalthr=angle,
+                        stepnormalnum=normals, stepfitnum=fits)
+                for angle, rounds, (normals, fits) in itertools.product((60,) if quick else (60, 90), (6,) if quick else (6, 20), ((2, 2),) if quick else ((2, 2), (2, 1), (5, 1)))]
     return [Method("Laplacian (PyMeshLab)", laplacian), Method("Taubin (PyMeshLab)", taubin), Method("HC Laplacian (PyMeshLab)", hc),
             Method("two-step (PyMeshLab)", two_step)]
 
@@ -128,7 +130,8 @@ def bilateral_methods(quick):
     def setting(reach, range_sigma, steps):
         return f"reach {reach}, sigma {range_sigma}, {steps} + 20 steps", lambda points, faces: timed(bilateral_normals, points, faces, reach, range_sigma, steps)
 
-    return [Method("bilateral normals (NumPy)", [setting(*values) for values in itertools.product((1, 2), (0.35,) if quick else (0.25, 0.35, 0.5), (10,) if quick else (10, 40))])]
+    values = [(1, 0.35, 10)] if quick else [(1, 0.35, 10), (1, 0.5, 10), (1, 0.5, 25), (2, 0.35, 10), (2, 0.35, 25), (2, 0.5, 10)]
+    return [Method("bilateral normals (NumPy)", [setting(*three) for three in values])]
 
 
 # ---------------------------------------------------------------- all

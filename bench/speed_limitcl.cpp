@@ -282,10 +282,9 @@ void write_q(const Arguments& arguments) { check(lcl_mesh_write(make_mesh(quad_s
 
 void run_part(const Arguments& arguments) {
     const std::vector<std::pair<const char*, void (*)(const Arguments&)>> parts = {
-        {"device", describe_device},     {"solve", time_solve}, {"shapes", time_other_shapes},
-        {"growth", time_growth},         {"setup", time_setup}, {"fields", time_fields},
-        {"first-call", time_first_call}, {"write", write_q},    {"local", time_local_solves},
-        {"filters", time_filters}};
+        {"device", describe_device},  {"solve", time_solve},    {"shapes", time_other_shapes},   {"growth", time_growth},
+        {"setup", time_setup},        {"fields", time_fields},  {"first-call", time_first_call}, {"write", write_q},
+        {"local", time_local_solves}, {"filters", time_filters}};
     for (const auto& [name, part] : parts)
         if (arguments.part == name) return part(arguments);
     throw std::runtime_error("'" + arguments.part + "' is not a part");

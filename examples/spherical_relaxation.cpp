@@ -52,7 +52,7 @@ bool morph(const limitcl::Mesh& mesh, const Matrix3Xd& sphere) {
     const limitcl::Context context;
     const limitcl::LimitOperator A(context, mesh);
     limitcl::MorphOptions options;
-    options.path = LCL_MORPH_EVEN;
+    options.path = limitcl::MorphPath::even;
     options.frames = frames;
     std::vector<double> distances;  // to the sphere, root mean square
     limitcl::morph(A, mesh.points(), {sphere.data(), static_cast<std::size_t>(sphere.size())}, 3, options, [&](int, double* points) {

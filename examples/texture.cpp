@@ -36,11 +36,13 @@ bool is_complete(const limitcl::Mesh& textured) {
 
 // Catmull-Clark and Loop keep the numbers of old vertices, so the first colours are those of the mesh itself.
 void colour_like(limitcl::Mesh& mesh, const limitcl::Mesh& textured) {
-    for (const char* name : {"red", "green", "blue"}) {
-        std::vector<double> values = textured.property(name);
-        values.resize(static_cast<std::size_t>(mesh.vertex_count()));
-        mesh.set_property(name, values);
+    std::vector<double> colours(3 * static_cast<std::size_t>(mesh.vertex_count()));
+    const char* const names[] = {"red", "green", "blue"};
+    for (std::size_t c = 0; c < 3; ++c) {
+        const std::vector<double> values = textured.property(names[c]);
+        for (std::size_t v = 0; v < colours.size() / 3; ++v) colours[3 * v + c] = values[v] / 255;
     }
+    mesh.set_colours(colours);
 }
 
 }  // namespace

@@ -30,5 +30,6 @@
     const __global realn *d = lcl_is_zero(c) ? x : (third);
 
 #define LCL_SERIES_VALUE(row, ax) lcl_add(lcl_add(lcl_scale(a, x[row]), lcl_scale(b, ax)), lcl_scale(c, d[row]))
+#define LCL_SERIES_STORE(row, ax, own) y[row] = LCL_SERIES_VALUE(row, ax)
 
 #endif

@@ -11,6 +11,5 @@
 __kernel __attribute__((reqd_work_group_size(LCL_GROUP, 1, 1))) void lcl_filter(LCL_PHASE, LCL_STENCILS, LCL_SERIES_FIELDS) {
     LCL_PHASE_BLOCK
     LCL_SERIES_STEP(y)
-#define LCL_FILTER(row, ax, own) y[row] = LCL_SERIES_VALUE(row, ax)
-    LCL_FOR_EACH_ROW(block, x, LCL_FILTER)
+    LCL_FOR_EACH_ROW(block, x, LCL_SERIES_STORE)
 }

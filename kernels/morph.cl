@@ -11,7 +11,6 @@ __kernel __attribute__((reqd_work_group_size(LCL_GROUP, 1, 1))) void lcl_morph(L
                                                                               __global realn *restrict frame) {
     LCL_PHASE_BLOCK
     LCL_SERIES_STEP(y)
-#define LCL_FILTER(row, ax, own) y[row] = LCL_SERIES_VALUE(row, ax)
 #define LCL_FRAME(row, ax, own)                            \
     {                                                      \
         const realn value = LCL_SERIES_VALUE(row, ax);     \
@@ -21,7 +20,7 @@ __kernel __attribute__((reqd_work_group_size(LCL_GROUP, 1, 1))) void lcl_morph(L
     if (first_step + sweep == last_step) {
         LCL_FOR_EACH_ROW(block, x, LCL_FRAME)
     } else {
-        LCL_FOR_EACH_ROW(block, x, LCL_FILTER)
+        LCL_FOR_EACH_ROW(block, x, LCL_SERIES_STORE)
     }
 }
 

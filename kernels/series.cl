@@ -11,8 +11,7 @@
 __kernel __attribute__((reqd_work_group_size(LCL_GROUP, 1, 1))) void lcl_series(LCL_PHASE, LCL_STENCILS, LCL_SERIES_FIELDS) {
     LCL_PHASE_BLOCK
     LCL_SERIES_STEP(input)
-#define LCL_HORNER(row, ax, own) y[row] = LCL_SERIES_VALUE(row, ax)
-    LCL_FOR_EACH_ROW(block, x, LCL_HORNER)
+    LCL_FOR_EACH_ROW(block, x, LCL_SERIES_STORE)
 }
 
 /// The same in two fields (as lcl_filter), with sums over the rows of each block: of D y and of D y^2, for means, energies and norms. scaling: D_ii by row, 0 where a row does not count.

@@ -52,7 +52,6 @@ typedef struct {
 typedef LCL_VECTOR(float) floatn;
 typedef LCL_REAL real; /* norms */
 
-
 #ifdef LCL_HAS_DOUBLE
 typedef LCL_VECTOR(double) sumn; /* sums over many rows */
 typedef double sum_real;

@@ -53,13 +53,12 @@ public:
     Plain(const std::string& path, const lcl_scheme_options& options) : mesh(read_mesh(path)), points(points_of(mesh.get())) {
         lcl_operator A = nullptr;
         capi_test::succeed(lcl_operator_create(shared_context(), mesh.get(), &options, &A));
-        const capi_test::Operator owner(A);
-        columns_.resize(points.size() / 3);
-        weights_.resize(points.size() / 3);
-        for (std::size_t vertex = 0; vertex < columns_.size(); ++vertex) read_row(A, vertex);
-        lcl_mesh_info info = LCL_MESH_INFO_INIT;
-        capi_test::succeed(lcl_mesh_get_info(mesh.get(), &info));
-        diagonal = info.diagonal;
+        read_rows(capi_test::Operator(A));
+    }
+    Plain(const std::string& path, const lcl_feature_options& options) : mesh(read_mesh(path)), points(points_of(mesh.get())) {
+        lcl_operator A = nullptr;
+        capi_test::succeed(lcl_operator_create_features(shared_context(), mesh.get(), &options, &A));
+        read_rows(capi_test::Operator(A));
     }
 
     /// A x, any number of channels.
@@ -80,6 +79,15 @@ public:
     double diagonal = 0.0;
 
 private:
+    void read_rows(const capi_test::Operator& A) {
+        columns_.resize(points.size() / 3);
+        weights_.resize(points.size() / 3);
+        for (std::size_t vertex = 0; vertex < columns_.size(); ++vertex) read_row(A.get(), vertex);
+        lcl_mesh_info info = LCL_MESH_INFO_INIT;
+        capi_test::succeed(lcl_mesh_get_info(mesh.get(), &info));
+        diagonal = info.diagonal;
+    }
+
     void read_row(lcl_operator A, std::size_t vertex) {
         std::size_t size = 0;
         capi_test::succeed(lcl_operator_get_row(A, static_cast<std::int32_t>(vertex), nullptr, nullptr, 0, &size));
@@ -517,6 +525,39 @@ TEST_CASE("pinned vertices stay to the bit, the others are filtered as if they w
     CHECK(largest_difference(out, given) > 0.1);
     REQUIRE(run(folder, "denoise in.obj -o out.obj --pin all.txt").exit_code == 0);
     CHECK(points_of(folder, "out.obj") == given);
+}
+
+TEST_CASE("--operator features denoises with the feature-preserving operator", "[cli][denoise]") {
+    const Folder folder;
+    folder.file("in.obj", rough_block(4));
+    folder.file("pins.txt", "3\n50\n");
+    const std::string path = (folder.path / "in.obj").string();
+    const Plain A(path, lcl_feature_options(LCL_FEATURE_OPTIONS_INIT));
+    const Outcome outcome = run(folder, "denoise in.obj -o out.obj --operator features --m 1 --k 2 --report -");
+    INFO(outcome.err);
+    REQUIRE(outcome.exit_code == 0);
+    const Values out = points_of(folder, "out.obj");
+    CHECK(largest_difference(out, denoised(A, A.points, 1, 2, false)) <= 1e-12 * A.diagonal);
+    CHECK(largest_difference(out, A.points) > 0.01);
+    const json report = report_of(outcome);
+    CHECK(report.at("parameters").at("operator") == "features");
+    CHECK_FALSE(report.contains("scheme"));  // it is no scheme's
+    CHECK_FALSE(report.at("parameters").contains("alpha"));
+
+    std::vector<std::int32_t> free;
+    for (std::int32_t vertex = 0; vertex < static_cast<std::int32_t>(A.points.size() / 3); ++vertex) {
+        if (vertex != 3 && vertex != 50) free.push_back(vertex);
+    }
+    lcl_feature_options options = LCL_FEATURE_OPTIONS_INIT;
+    options.subset = free.data();
+    options.subset_count = free.size();
+    const Plain pinned(path, options);
+    REQUIRE(run(folder, "denoise in.obj -o out.obj --operator features --plain --pin pins.txt").exit_code == 0);
+    const Values held = points_of(folder, "out.obj");
+    CHECK(largest_difference(held, denoised(pinned, A.points, 2, 3, true)) <= 1e-12 * A.diagonal);
+    for (const std::size_t vertex : {3u, 50u}) {
+        for (std::size_t axis = 0; axis < 3; ++axis) CHECK(held[3 * vertex + axis] == A.points[3 * vertex + axis]);
+    }
 }
 
 TEST_CASE("sharpen adds the terms of its band", "[cli][sharpen]") {
@@ -981,7 +1022,7 @@ TEST_CASE("filters of real meshes", "[cli][meshes]") {
     const Folder folder;
     const std::string name = GENERATE(as<std::string>(), "noisy/trim-star_noisy.obj.gz", "noisy/Fandisk0.7_Noisy.obj.gz", "morph/cylinder-1.obj");
     const std::string path = (fs::path(meshes) / name).string();
-    if (!fs::exists(path)) return;
+    REQUIRE(fs::exists(path));
     const Plain A(path, scheme_of(LCL_SCHEME_LOOP));
     const Outcome denoise = run(folder, "denoise '" + path + "' -o out.obj");
     INFO(name << "\n" << denoise.err);
@@ -1001,7 +1042,7 @@ TEST_CASE("morphs of real pairs", "[cli][meshes]") {
     const std::string ending = name == "morph/cheburashka-0" ? ".obj.gz" : ".obj";
     const std::string from = (fs::path(meshes) / (name + "1" + ending)).string();
     const std::string to = (fs::path(meshes) / (name + (ending == ".obj" ? "3" : "4") + ending)).string();
-    if (!fs::exists(from) || !fs::exists(to)) return;
+    REQUIRE((fs::exists(from) && fs::exists(to)));
     const Plain A(from, scheme_of(LCL_SCHEME_LOOP)), B(to, scheme_of(LCL_SCHEME_LOOP));
     const Outcome outcome = run(folder, "morph '" + from + "' '" + to + "' -o f%d.obj --even --frames 5");
     INFO(name << "\n" << outcome.err);

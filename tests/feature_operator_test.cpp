@@ -40,13 +40,13 @@ Operator make_features(const shapes::Shape& shape, const lcl_feature_options& op
     return A;
 }
 
-/// M with E - (E - A)^3 of the default scheme's limit rows applied `times` times, the rows from the oracle.
+/// M with (E - (E - A)^3) A of the default scheme's limit rows applied `times` times, the rows from the oracle.
 Eigen::MatrixXd smoothed(const shapes::Shape& shape, int times) {
     lcl::SchemeOptions scheme;
     if (shapes::is_triangle_mesh(shape.mesh)) scheme.scheme = lcl::Scheme::loop;
     const Eigen::MatrixXd a = oracle::limit_rows(shape.mesh, shape.features, scheme), e = Eigen::MatrixXd::Identity(a.rows(), a.rows());
     Eigen::MatrixXd points = oracle::positions(shape.mesh);
-    for (int time = 0; time < times; ++time) points -= (e - a) * (e - a) * (e - a) * points;
+    for (int time = 0; time < times; ++time) points = (a - (e - a) * (e - a) * (e - a) * a) * points;
     return points;
 }
 

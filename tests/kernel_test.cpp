@@ -407,7 +407,8 @@ private:
     }
     ResidualNorms norms_of(const Values& residual) const { return norms_of(residual, all()); }
 
-    /// Norms that the last launch left, against those of m - A x, or of -m where the residual itself is given. Further channels are measured together with those of their block.
+    /// Norms that the last launch left, against those of m - A x, or of -m where the residual itself is given. Further channels are measured together with
+    /// those of their block.
     void check_norms(const Field& like, const Values& m, double tolerance) { check_norms(like, m, tolerance, all(), false); }
     void check_norms(const Field& like, const Values& m, double tolerance, const Part& part, bool is_residual) {
         Values residual(m.size());

@@ -6,7 +6,7 @@
 
 #include <catch2/catch.hpp>
 
-#include "host/filter/noise.h"
+#include "host/apply/noise.h"
 #include "tests/oracle/noise.h"
 #include "tests/solver_support.h"
 

@@ -101,14 +101,8 @@ Buffer DeviceOperator::upload_doubled(const Array<Index>& rows, const char* what
 }
 
 Buffer DeviceOperator::upload_reals(const std::vector<double>& values, Real real, const char* what) {
-    if (is_double(*context_, real)) return upload(values.data(), values.size() * sizeof(double), what);
-    std::vector<float> narrow;
-    narrow.reserve(values.size() * (real == Real::wide ? 2 : 1));
-    for (const double value : values) {
-        narrow.push_back(static_cast<float>(value));
-        if (real == Real::wide) narrow.push_back(static_cast<float>(value - narrow.back()));  // the low half of a pair
-    }
-    return upload(narrow.data(), narrow.size() * sizeof(float), what);
+    const std::vector<unsigned char> bytes = real_bytes(*context_, real, values);
+    return upload(bytes.data(), bytes.size(), what);
 }
 
 const Buffer& DeviceOperator::weights(Real real, bool weighted_rows) {
@@ -175,9 +169,9 @@ void DeviceOperator::sweep(const Sweep& s, const Field& m, const Field& x, const
             launch(*context_, norm_kernel("relax", "lcl_relax", x, k), size(part), part.first_block, blocks_, runs_, weights(x.real(), false), indices_,
                    weighted_offsets_, weighted_indices_, weights(x.real(), true), a, b, b_jacobi, m.buffer(k), x.buffer(k), y.buffer(k), norms);
         else
-            launch(*context_, norm_kernel("relax", "lcl_relax_three_term", x, k), size(part), part.first_block, blocks_, runs_, weights(x.real(), false), indices_,
-                   weighted_offsets_, weighted_indices_, weights(x.real(), true), a, b, b_jacobi, c, m.buffer(k), x.buffer(k), d->buffer(k), y.buffer(k),
-                   norms);
+            launch(*context_, norm_kernel("relax", "lcl_relax_three_term", x, k), size(part), part.first_block, blocks_, runs_, weights(x.real(), false),
+                   indices_, weighted_offsets_, weighted_indices_, weights(x.real(), true), a, b, b_jacobi, c, m.buffer(k), x.buffer(k), d->buffer(k),
+                   y.buffer(k), norms);
     }
 }
 

@@ -72,8 +72,9 @@ public:
     void wide_residual(const Field& m, const Field& x, Field& r, const Part& part);
     /// x += d on the part's rows; x wide or single, d single.
     void correct(const Field& d, Field& x, const Part& part);
-    /// Steps of a series from y_0 = input to y_count in `out`, over all rows, in turns with `scratch`; no steps: a copy. All three differ; what out and scratch held
-    /// is lost, also where progress stops it (the result is then false). One pass a step; chains of steps follow each other through the rows as those of chain().
+    /// Steps of a series from y_0 = input to y_count in `out`, over all rows, in turns with `scratch`; no steps: a copy. All three differ; what out and scratch
+    /// held is lost, also where progress stops it (the result is then false). One pass a step; chains of steps follow each other through the rows as those of
+    /// chain().
     bool series(const SeriesSteps& steps, const Field& input, Field& out, Field& scratch, const SeriesProgress& progress = {});
     /// The same (SeriesThird::older) with the sums over every step's y, weighted with the plan's scaling. Waits.
     std::vector<SeriesSums> series_with_sums(const SeriesSteps& steps, const Field& input, Field& out, Field& scratch);

@@ -29,7 +29,9 @@ void DeviceOperator::run_series_chain(const SeriesSteps& steps, std::int64_t fir
     const auto& [input, even, odd] = fields;
     std::vector<double> values;
     for (std::int64_t k = first; k < first + phases.sweeps; ++k) values.insert(values.end(), {steps[k].a, steps[k].b, steps[k].c});
-    const Buffer coefficients = upload_reals(values, input->real(), "the coefficients of a series");
+    // By no queue: an upload would wait for launches that the caller may hold back.
+    const std::vector<unsigned char> bytes = real_bytes(*context_, input->real(), values);
+    const Buffer coefficients(context_, bytes.size(), "the coefficients of a series", bytes.data());
     const cl_int first_step = first == 0 ? 0 : 1;  // only whether it is the first matters
     for (std::size_t b = 0; b < input->blocks().size(); ++b)
         prepare(b, [&](cl_kernel kernel, const auto&... rest) {
@@ -110,11 +112,12 @@ void DeviceOperator::read_series_sums(const Field& like, const Part& part, Index
 void DeviceOperator::morph(const SeriesSteps& steps, const Field& target, Field& difference, Field& scratch, Field& frame) {
     const std::int64_t count = steps.count();
     const bool ends_in_scratch = count % 2 == 1;
-    run_series(steps, difference, ends_in_scratch ? scratch : difference, ends_in_scratch ? difference : scratch, {}, [&](const Part&, const Phases& phases, std::int64_t first, std::size_t b, const auto& set) {
-        const bool ends = first + phases.sweeps == count;
-        const auto last = static_cast<cl_int>(ends ? (first == 0 ? 0 : 1) + phases.sweeps - 1 : -1);
-        set(kernel("morph", "lcl_morph", difference, b), last, target.buffer(b), frame.buffer(b));
-    });
+    run_series(steps, difference, ends_in_scratch ? scratch : difference, ends_in_scratch ? difference : scratch, {},
+               [&](const Part&, const Phases& phases, std::int64_t first, std::size_t b, const auto& set) {
+                   const bool ends = first + phases.sweeps == count;
+                   const auto last = static_cast<cl_int>(ends ? (first == 0 ? 0 : 1) + phases.sweeps - 1 : -1);
+                   set(kernel("morph", "lcl_morph", difference, b), last, target.buffer(b), frame.buffer(b));
+               });
     if (ends_in_scratch) std::swap(difference, scratch);
 }
 
@@ -127,7 +130,8 @@ void DeviceOperator::launch_rows(const char* name, const Field& like, const std:
 }
 
 void DeviceOperator::morph_blend(double rho, const Field& target, Field& difference, Field& frame) {
-    const Buffer factor = upload_reals({rho}, difference.real(), "the factor of a morph");
+    const std::vector<unsigned char> bytes = real_bytes(*context_, difference.real(), {rho});
+    const Buffer factor(context_, bytes.size(), "the factor of a morph", bytes.data());
     launch_rows("lcl_morph_blend", difference, [&](cl_kernel kernel, std::size_t b) {
         set_arguments(kernel, plan_->vertex_count, factor, target.buffer(b), difference.buffer(b), frame.buffer(b));
     });

@@ -13,6 +13,7 @@ std::vector<double> smoothed_points(const PolygonMesh& mesh, const Topology& top
     const Transform transform = fit_transform(plan, mesh.positions.data(), 3, 3);
     std::vector<double> points = to_plan_order(plan, transform, mesh.positions.data(), 3, 3);
     for (int time = 0; time < times; ++time) {
+        points = host_apply(plan, points, 3);
         std::vector<double> rest = points;
         for (int power = 0; power < 3; ++power) {
             const std::vector<double> limit = host_apply(plan, rest, 3);

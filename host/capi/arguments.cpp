@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "host/capi/arguments.h"
 
-#include <algorithm>
-
 namespace lcl {
 
 Precision inner_precision(lcl_precision precision) {
@@ -31,12 +29,6 @@ void check_same_operator(lcl_operator A, std::initializer_list<lcl_field> fields
         if (field->field.channels() != first->field.channels() || field->field.real() != first->field.real())
             throw InvalidArgument("the fields differ in channels or precision");
     }
-}
-
-void require_scaling(const Plan& plan, const char* what) {
-    const bool has_rows = plan.row_count > plan.isolated_count;
-    if (has_rows && std::all_of(plan.scaling.begin(), plan.scaling.end(), [](double d) { return d == 0; }))
-        throw InvalidArgument(std::string(what) + " need the scaling D that makes D A symmetric, and this operator was made without: give lcl_rows.scaling");
 }
 
 }  // namespace lcl

@@ -23,7 +23,4 @@ const Transform& transform_of(lcl_field field, const char* name);
 /// Fields of A, of one shape and type; null ones are left out.
 void check_same_operator(lcl_operator A, std::initializer_list<lcl_field> fields);
 
-/// InvalidArgument where the operator has no scaling D: "energies need ..".
-void require_scaling(const Plan& plan, const char* what);
-
 }  // namespace lcl

@@ -65,8 +65,7 @@ lcl_status lcl_field_create(lcl_operator A, int32_t channels, lcl_precision prec
     return guarded([&] {
         required(field, "field");
         if (channels < 1) throw InvalidArgument("channels is " + std::to_string(channels) + ", it is at least 1");
-        if (precision < LCL_PRECISION_MIXED || precision > LCL_PRECISION_DOUBLE)
-            throw InvalidArgument("precision is " + std::to_string(precision) + ", it goes from 0 to 2");
+        inner_precision(precision);  // refuses what is none
         Field values = required(A, "A")->system->A->make_field(channels, precision == LCL_PRECISION_DOUBLE ? Real::full : Real::single);
         values.fill_zero();
         *field = new lcl_field_s(A, std::move(values));

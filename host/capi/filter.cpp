@@ -23,6 +23,7 @@ PassProgress inner_progress(lcl_pass_callback progress, void* user) {
 
 Polynomial polynomial(const lcl_expand_options& options) {
     const Series series = inner_series(options.series);
+    if (options.weight_count > 0) required(options.weights, "options.weights");
     if (options.weights == nullptr) return sum_of_terms(series, options.first, options.last);
     return equaliser(series, {options.weights, options.weights + std::min<std::size_t>(options.weight_count, most_terms + 1)}, options.remainder);
 }
@@ -103,7 +104,6 @@ lcl_status lcl_spectrum(lcl_operator A, const double* M, size_t stride, int32_t 
         if (stride == 0) stride = channels;
         check_channels(channels, stride, "stride");
         refuse_ghosts(system.plan());
-        require_scaling(system.plan(), "energies");
         const Transform transform = fit_transform(system.plan(), required(M, "M"), stride, channels);
         Field values = system.A->make_field(channels, real_of(inner_precision(precision)));
         upload_rows(system.plan(), transform, {M, stride}, values);
@@ -117,7 +117,6 @@ lcl_status lcl_spectrum_field(lcl_operator A, lcl_field M, int32_t term_count, d
     return guarded([&] {
         check_same_operator(required(A, "A"), {required(M, "M")});
         refuse_ghosts(A->system->plan());
-        require_scaling(A->system->plan(), "energies");
         const std::vector<double> found = term_energies(*A->system, M->field, transform_of(M, "M"), term_count);
         std::copy(found.begin(), found.end(), required(energies, "energies"));
         return LCL_OK;

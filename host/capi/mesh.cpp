@@ -200,9 +200,9 @@ std::vector<VertexProperty> colour_columns(const double* colours, Index vertex_c
     for (const char* name : {"red", "green", "blue"}) columns.push_back({name, VertexProperty::Kind::colour, "uchar", {}});
     for (std::size_t i = 0; i < 3 * static_cast<std::size_t>(vertex_count); ++i) {
         if (!(colours[i] >= 0 && colours[i] <= 1))
-            throw InvalidArgument("colours: " + columns[i % 3].name + " of vertex " + std::to_string(i / 3) + " is " + std::to_string(colours[i]) +
-                                      ", it goes from 0 to 1",
-                                  {{static_cast<Index>(i / 3)}, {}});
+            throw InvalidArgument(
+                "colours: " + columns[i % 3].name + " of vertex " + std::to_string(i / 3) + " is " + std::to_string(colours[i]) + ", it goes from 0 to 1",
+                {{static_cast<Index>(i / 3)}, {}});
         columns[i % 3].values.push_back(std::round(255 * colours[i]));
     }
     return columns;

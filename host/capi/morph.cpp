@@ -17,6 +17,8 @@ MorphOptions inner_options(const lcl_morph_options& given) {
     options.precision = inner_precision(given.precision);
     options.path = static_cast<MorphPath>(given.path);
     if (given.frames != 0) options.frames = given.frames;
+    if (given.m != nullptr && given.m_count == 0) throw InvalidArgument("options.m is given without its options.m_count");
+    if (given.rho != nullptr && given.rho_count == 0) throw InvalidArgument("options.rho is given without its options.rho_count");
     if (given.m_count > 0) options.m.assign(required(given.m, "options.m"), given.m + given.m_count);
     if (given.rho_count > 0) options.rho.assign(required(given.rho, "options.rho"), given.rho + given.rho_count);
     return options;
@@ -31,7 +33,8 @@ std::string corners_text(const PolygonMesh& mesh, Index f) {
 }
 
 void require_same_count(const char* what, Index a, Index b) {
-    if (a != b) throw BadInput("the meshes differ: one has " + std::to_string(a) + " " + what + ", the other " + std::to_string(b) + ": they must have the same faces");
+    if (a != b)
+        throw BadInput("the meshes differ: one has " + std::to_string(a) + " " + what + ", the other " + std::to_string(b) + ": they must have the same faces");
 }
 
 void require_same_faces(const PolygonMesh& a, const PolygonMesh& b) {
@@ -59,9 +62,9 @@ lcl_status lcl_morph(lcl_operator A, const double* from, const double* to, size_
         refuse_ghosts(system.plan());
         required(frame, "frame");
         require_finite(required(from, "from"), stride, channels, system.plan().vertex_count, "from");
+        require_finite(required(to, "to"), stride, channels, system.plan().vertex_count, "to");
         const MorphOptions inner = inner_options(options_or(options, LCL_MORPH_OPTIONS_INIT, "options"));
-        if (inner.path == MorphPath::even) require_scaling(system.plan(), "even morphs");
-        morph_host(system, from, required(to, "to"), stride, channels, inner, [&](int number, double* points) { return frame(user, number, points) != 0; });
+        morph_host(system, from, to, stride, channels, inner, [&](int number, double* points) { return frame(user, number, points) != 0; });
         return LCL_OK;
     });
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "host/mesh/volume.h"
 
+#include <algorithm>
 #include <numeric>
 
 #include "host/capi/handles.h"

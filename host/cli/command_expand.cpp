@@ -48,7 +48,7 @@ lcl_expand_options expand_options(Job& job) {
     return expand;
 }
 
-/// The terms of the interpolation series tend to nothing on a singular operator: its null vectors stay in all of them.
+/// On a singular operator the terms of the interpolation series do not tend to nothing: its null vectors stay in all of them.
 std::optional<Failure> interpolation_failure(Job& job, const Filter& filter) {
     if (job.options.series != LCL_SERIES_INTERPOLATION) return std::nullopt;
     lcl_diagnosis diagnosis = LCL_DIAGNOSIS_INIT;

@@ -35,8 +35,8 @@ void write_frame(FrameWriter& writer, std::int32_t frame, double* points) {
 std::int32_t on_frame(void* user, std::int32_t frame, double* points) {
     FrameWriter& writer = *static_cast<FrameWriter*>(user);
     const int last = writer.job.options.frames;
-    writer.job.terminal.progress().update(static_cast<double>(frame) / last, "frame " + std::to_string(frame) + " of " + std::to_string(last));
     try {
+        writer.job.terminal.progress().update(static_cast<double>(frame) / last, "frame " + std::to_string(frame) + " of " + std::to_string(last));
         write_frame(writer, frame, points);
     } catch (...) {
         writer.failure = std::current_exception();

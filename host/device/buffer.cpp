@@ -23,13 +23,13 @@ void refuse_too_large(const Context& context, std::size_t bytes, const std::stri
 
 }  // namespace
 
-Buffer::Buffer(std::shared_ptr<Context> context, std::size_t bytes, const std::string& what) : bytes_(bytes) {
+Buffer::Buffer(std::shared_ptr<Context> context, std::size_t bytes, const std::string& what, const void* data) : bytes_(bytes) {
     refuse_too_large(*context, bytes, what);
     cl_int code = CL_SUCCESS;
-    const std::size_t size = std::max<std::size_t>(bytes, sizeof(cl_double4));
+    const std::size_t size = data != nullptr ? bytes : std::max<std::size_t>(bytes, sizeof(cl_double4));
     // PoCL takes plain memory at a buffer's first use and aborts the process if it gets none; host memory it takes at once and answers with an error code.
     const cl_mem_flags place = context->device().is_cpu ? CL_MEM_ALLOC_HOST_PTR : 0;
-    memory_ = clCreateBuffer(context->get(), CL_MEM_READ_WRITE | place, size, nullptr, &code);
+    memory_ = clCreateBuffer(context->get(), CL_MEM_READ_WRITE | place | (data != nullptr ? CL_MEM_COPY_HOST_PTR : 0), size, const_cast<void*>(data), &code);
     check(code, "clCreateBuffer", "allocating " + std::to_string(bytes) + " bytes for " + what + " on " + context->device().name);
     context_ = std::move(context);
     counted_bytes_ = bytes;

@@ -96,8 +96,8 @@ std::shared_ptr<Context> Context::adopt(cl_context context, cl_command_queue que
     return made;
 }
 
-// What is left on the queues is waited for: a driver that still compiles a kernel for it (PoCL) would abort where the program ends. A caller's own queue may wait
-// for what the caller has yet to do, and is the caller's to finish.
+// What is left on the queues is waited for: a driver that still compiles a kernel for it (PoCL) would abort where the program ends. A caller's own queue may
+// wait for what the caller has yet to do, and is the caller's to finish.
 Context::~Context() {
     if (owns_queue_ && queue_) clFinish(queue_);
     if (owns_queue_ && transfer_queue_) clFinish(transfer_queue_);

@@ -83,7 +83,8 @@ public:
     /// Allocates, contents undefined; 0 bytes give a buffer that kernels can take too. `what` names it in messages ("the control points").
     /// OutOfMemory, with the numbers, above the device's largest allocation, above its memory together with this context's other buffers, or when the device
     /// refuses.
-    Buffer(std::shared_ptr<Context> context, std::size_t bytes, const std::string& what);
+    /// `data`, if given, is what it holds, copied before the call returns and by no queue.
+    Buffer(std::shared_ptr<Context> context, std::size_t bytes, const std::string& what, const void* data = nullptr);
     /// Refers to a caller's cl_mem (retained), from byte `offset` on; kernels get the whole memory object, so they take the offset as an argument.
     /// InvalidArgument for memory of another OpenCL context or too small for offset + bytes.
     Buffer(std::shared_ptr<Context> context, cl_mem memory, std::size_t offset, std::size_t bytes);

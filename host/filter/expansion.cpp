@@ -52,6 +52,7 @@ void filter_host(LimitSystem& system, const Polynomial& p, const double* x, std:
 
 std::vector<double> term_energies(LimitSystem& system, const Field& x, const Transform& transform, int term_count) {
     const Plan& plan = system.plan();
+    require_scaling(plan, "energies");
     const double weight = std::accumulate(plan.scaling.begin(), plan.scaling.end(), 0.0);
     const std::vector<SeriesSums> sums = system.A->series_with_sums(term_steps(term_count), x, work(system, LimitSystem::Purpose::correction, x),
                                                                     work(system, LimitSystem::Purpose::scratch, x));

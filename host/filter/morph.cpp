@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <string>
 
 #include "host/field/host_rows.h"
@@ -154,6 +155,7 @@ void morph_field(LimitSystem& system, int m, double rho, const Field& target, Fi
 void morph_host(LimitSystem& system, const double* from, const double* to, std::size_t stride, int channels, const MorphOptions& options,
                 const FrameSink& frame) {
     check(options);
+    if (options.path == MorphPath::even) require_scaling(system.plan(), "even morphs");
     Morph(system, from, to, stride, channels, options).run(frame);
 }
 

@@ -12,6 +12,7 @@ namespace lcl {
 namespace {
 
 constexpr double pi = 3.14159265358979323846;
+constexpr double most_weight = 1e30;
 constexpr double most_gain = 1e6;  // of a sharpener: what floats of size 1 take without losing the low frequencies
 
 constexpr SeriesStep apply{0, 1, 0};    // A
@@ -21,6 +22,11 @@ void check_range(const char* name, int value, int least) {
     if (value < least || value > most_terms)
         throw InvalidArgument(std::string(name) + " is " + std::to_string(value) + ", it goes from " + std::to_string(least) + " to " +
                               std::to_string(most_terms));
+}
+
+void check_weight(const std::string& name, double weight) {
+    if (!std::isfinite(weight)) throw InvalidArgument(name + " is not finite");
+    if (!(std::fabs(weight) <= most_weight)) throw InvalidArgument(name + " is beyond 10^30, which floats do not hold: take smaller ones");
 }
 
 void check_band(int first, int last, int least) {
@@ -117,9 +123,8 @@ Polynomial sum_of_terms(Series series, int first, int last) {
 Polynomial equaliser(Series series, const std::vector<double>& weights, double remainder) {
     if (weights.empty() || weights.size() > most_terms)
         throw InvalidArgument("an equaliser of " + std::to_string(weights.size()) + " weights was asked for, it has 1 to " + std::to_string(most_terms));
-    for (std::size_t i = 0; i < weights.size(); ++i)
-        if (!std::isfinite(weights[i])) throw InvalidArgument("weight " + std::to_string(i) + " of the equaliser is not finite");
-    if (!std::isfinite(remainder)) throw InvalidArgument("the weight of the remainder is not finite");
+    for (std::size_t i = 0; i < weights.size(); ++i) check_weight("weight " + std::to_string(i) + " of the equaliser", weights[i]);
+    check_weight("the weight of the remainder", remainder);
     return {{{horner(series == Series::representation ? without_a(weights, remainder) : weights)}}, weights[0]};
 }
 

@@ -10,8 +10,8 @@ namespace lcl {
 
 enum class Series { representation, interpolation };  // order of lcl_series
 
-constexpr int most_terms = 100000;   // of a sum, m and k: beyond, nothing but rounding is left
-constexpr int most_factored = 16;    // m up to which D is a product of factors, whose rounding grows like m; beyond, D is summed up as Horner does
+constexpr int most_terms = 100000;  // of a sum, m and k: beyond, nothing but rounding is left
+constexpr int most_factored = 16;   // m up to which D is a product of factors, whose rounding grows like m; beyond, D is summed up as Horner does
 
 /// p(B) x: stages one after the other, each `times` times.
 struct Polynomial {
@@ -33,7 +33,7 @@ struct Polynomial {
 Polynomial sum_of_terms(Series series, int first, int last);
 
 /// sum w_i B^i A + r B^count (representation; r the remainder), or sum w_i B^i (interpolation, no remainder). InvalidArgument for no or too many weights, or
-/// weights that are not finite. Horner form, its leading zeros left out.
+/// weights that are not finite or beyond 10^30. Horner form, its leading zeros left out.
 Polynomial equaliser(Series series, const std::vector<double>& weights, double remainder);
 
 /// D^k A, or D^k where `plain`, D = 1 - B^(m+1) (eq. 8): k (m + 1) + 1 passes, plain k (m + 1). InvalidArgument for m or k out of 0 .. most_terms.

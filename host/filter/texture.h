@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "host/filter/noise.h"
+#include "host/apply/noise.h"
 #include "host/refine/refine.h"
 #include "host/solve/solve.h"
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "host/mesh/volume.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "host/mesh/box.h"
@@ -84,8 +85,7 @@ double root_near_zero(double c0, double c1, double c2, double c3) {
     return t;
 }
 
-std::vector<double> moved(const std::vector<double>& positions, const Array<Vector>& directions, const Volumes& volumes,
-                          const std::vector<double>& distances) {
+std::vector<double> moved(const std::vector<double>& positions, const Array<Vector>& directions, const Volumes& volumes, const std::vector<double>& distances) {
     std::vector<double> out = positions;
     for (std::size_t v = 0; v < directions.size(); ++v)
         if (volumes.component_of(static_cast<Index>(v)) >= 0)
@@ -130,8 +130,8 @@ std::vector<std::string> match_volumes(const PolygonMesh& mesh, const Topology& 
         const bool is_volume = std::fabs(wanted[i]) > least_before[i] && std::fabs(now[i]) > least[i] && (now[i] > 0) == (wanted[i] > 0);
         if (is_volume && std::fabs(found[i] - wanted[i]) <= reached * std::fabs(wanted[i])) continue;
         distances[i] = 0;
-        notes.push_back("the volume of the component of vertex " + std::to_string(first[i]) + " was not kept: " +
-                        (is_volume ? "no distance along the normals gives it back" : "it encloses none, or was turned inside out"));
+        notes.push_back("the volume of the component of vertex " + std::to_string(first[i]) +
+                        " was not kept: " + (is_volume ? "no distance along the normals gives it back" : "it encloses none, or was turned inside out"));
     }
     positions = moved(positions, directions, volumes, distances);
     return notes;

@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "host/apply/noise.h"
 #include "host/apply/row_transfer.h"
 #include "host/apply/transfer.h"
-#include "host/filter/noise.h"
 #include "host/solve/limit_system.h"
 
 namespace lcl {

@@ -78,6 +78,11 @@ std::unique_ptr<LimitSystem> make_feature_system(std::shared_ptr<Context> contex
     return system;
 }
 
+void require_scaling(const Plan& plan, const char* what) {
+    if (!plan.has_scaling)
+        throw InvalidArgument(std::string(what) + " need the scaling D that makes D A symmetric, and this operator was made without: give lcl_rows.scaling");
+}
+
 void refuse_ghosts(const Plan& plan) {
     if (plan.row_count < plan.vertex_count)
         throw Unsupported("this operator has rows for " + std::to_string(plan.row_count) + " of its " + std::to_string(plan.vertex_count) +

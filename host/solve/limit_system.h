@@ -77,6 +77,9 @@ std::unique_ptr<LimitSystem> make_feature_system(std::shared_ptr<Context> contex
 /// there is to know of rows without a scaling. Unsupported where it finds one.
 void check_spectrum(LimitSystem& system);
 
+/// InvalidArgument where rows came without the scaling D that makes D A symmetric: "energies need ..".
+void require_scaling(const Plan& plan, const char* what);
+
 /// Unsupported where A has ghosts, whose values come from elsewhere: neither solves nor filters go without them.
 void refuse_ghosts(const Plan& plan);
 

@@ -9,6 +9,9 @@
 #include "limit_operator.hpp"
 
 #include <exception>
+#include <functional>
+#include <utility>
+#include <vector>
 
 namespace limitcl {
 
@@ -51,11 +54,17 @@ struct Sharpen {
     int first = 1, last = 3, k = 1;
 };
 
+enum class MorphPath {
+    recursion = LCL_MORPH_RECURSION,  ///< m and rho as given
+    even = LCL_MORPH_EVEN,            ///< rho of each frame for equal steps; the last frame is the target itself
+    linear = LCL_MORPH_LINEAR         ///< straight lines
+};
+
 struct MorphOptions {
-    lcl_morph_path path = LCL_MORPH_RECURSION;
-    int frames = 10;                 ///< N: frames 0 (the start) to N are given out
-    std::vector<std::int32_t> m;     ///< of the step to frame 1, 2, ..; the last is repeated; empty: 2
-    std::vector<double> rho;         ///< likewise, above 0 and up to 1; empty: 0.5. Not with LCL_MORPH_EVEN
+    MorphPath path = MorphPath::recursion;
+    int frames = 10;              ///< N: frames 0 (the start) to N are given out
+    std::vector<std::int32_t> m;  ///< of the step to frame 1, 2, ..; the last is repeated; empty: 2
+    std::vector<double> rho;      ///< likewise, above 0 and up to 1; empty: 0.5. Not with MorphPath::even
     Precision precision = Precision::mixed;
 };
 
@@ -133,12 +142,14 @@ std::vector<double> filter(const LimitOperator& A, ArrayView<double> M, int chan
 
 }  // namespace detail
 
-/// A weighted sum of terms of M, vertex_count x channels, positions first. A term beyond the first, or a band, is a field of vectors round the origin.
-/// One pass a term up to the last one.
+/// A weighted sum of terms of M, vertex_count x channels, positions first, model units; so is the result. A term beyond the first, or a band, is a field of
+/// vectors round the origin. One pass a term up to the last one. Errors of all filters: LCL_ERROR_INVALID_ARGUMENT, LCL_ERROR_BAD_INPUT (values that are not
+/// finite), LCL_ERROR_CANCELLED, LCL_ERROR_MEMORY, LCL_ERROR_UNSUPPORTED (ghosts; double precision on a device without).
 [[nodiscard]] inline std::vector<double> expand(const LimitOperator& A, ArrayView<double> M, int channels = 3, const Terms& terms = {},
                                                 Precision precision = Precision::mixed, const PassProgress& progress = {}) {
     return detail::filter(A, M, channels, detail::to_c(terms), precision, progress, lcl_expand);
 }
+/// The same with a weight for each term: at most as many passes as there are weights.
 [[nodiscard]] inline std::vector<double> expand(const LimitOperator& A, ArrayView<double> M, int channels, const Equaliser& equaliser,
                                                 Precision precision = Precision::mixed, const PassProgress& progress = {}) {
     return detail::filter(A, M, channels, detail::to_c(equaliser), precision, progress, lcl_expand);
@@ -148,6 +159,7 @@ std::vector<double> filter(const LimitOperator& A, ArrayView<double> M, int chan
                                                  Precision precision = Precision::mixed, const PassProgress& progress = {}) {
     return detail::filter(A, M, channels, detail::to_c(settings), precision, progress, lcl_denoise);
 }
+/// T_k of T += sum of (E - A)^i T, T_0 = M: k times `last` passes.
 [[nodiscard]] inline std::vector<double> sharpen(const LimitOperator& A, ArrayView<double> M, int channels = 3, const Sharpen& settings = {},
                                                  Precision precision = Precision::mixed, const PassProgress& progress = {}) {
     return detail::filter(A, M, channels, detail::to_c(settings), precision, progress, lcl_sharpen);
@@ -188,7 +200,7 @@ inline void morph(const LimitOperator& A, ArrayView<double> from, ArrayView<doub
     detail::require_values(A, to.size(), channels, "to");
     lcl_morph_options c = LCL_MORPH_OPTIONS_INIT;
     c.precision = static_cast<lcl_precision>(options.precision);
-    c.path = options.path;
+    c.path = static_cast<lcl_morph_path>(options.path);
     c.frames = options.frames;
     c.m = options.m.data();
     c.m_count = options.m.size();

@@ -21,7 +21,8 @@
  * - Handles are reference counted: _create makes one reference, _retain adds one, _release drops one (NULL is allowed). What a handle needs it keeps alive.
  * - Arrays that a caller passes in are copied before the call returns; outputs go to the caller's memory. Strings that the library gives out live as long as
  *   their handle, lcl_last_error()'s until the next failing call of the thread.
- * - Options structs begin with struct_size: start from LCL_..._INIT; every other zero means the default. NULL options mean all defaults.
+ * - Options structs begin with struct_size: start from LCL_..._INIT. Zeros mean the default, but for members whose comment says what the _INIT holds, where 0
+ * is a value like any other. NULL options mean all defaults.
  * - One context is one device and one thread at a time. Different contexts are independent, also on one device; operators on several devices run at once.
  *   A mesh may be read by several threads; functions that change it need it alone.
  * - Indices are zero-based. At most 2^31 - 1 of anything.
@@ -407,8 +408,8 @@ LCL_API lcl_status lcl_interpolate(lcl_operator A, const double* M, size_t strid
                                    size_t P_stride, lcl_solve_report* report);
 /** The same on the points of a mesh (which must be the one that A was made from, or one with its faces): replaces them by P. */
 LCL_API lcl_status lcl_interpolate_mesh(lcl_operator A, lcl_mesh mesh, const lcl_solve_options* options, lcl_solve_report* report);
-/** The same on fields of one operator that stay on the device; P needs no upload unless it is a start. Precision DOUBLE needs fields of doubles, the others take
- * both kinds. */
+/** The same on fields of one operator that stay on the device; P needs no upload unless it is a start. Precision DOUBLE needs fields of doubles, the others
+ * take both kinds. */
 LCL_API lcl_status lcl_interpolate_field(lcl_operator A, lcl_field M, const lcl_solve_options* options, lcl_field P, lcl_solve_report* report);
 /** Moves few vertices of a surface that interpolates: writes `values` (count x channels, model units, the new rows of M for `vertices`, each named once) into M
  * and updates P, which solved A P = M to the tolerance before, to the same tolerance. A^-1 decays exponentially with the distance, so only the surroundings of
@@ -428,11 +429,10 @@ LCL_API lcl_status lcl_interpolate_field(lcl_operator A, lcl_field M, const lcl_
  * Gauss-Seidel on the host, on the rows above the tolerance only. The full solve, warm-started, takes over where the operator is singular or indefinite or has
  * rows without D, where more than a sixteenth of the rows (and 4096) would be looked at, and where the iteration is slow (AUTO: 100 sweeps); then changed_rows
  * is vertex_count. options: solver is AUTO or GS, exact_sweeps 0; precision as for lcl_interpolate_field; warm_start, weight and certify are not looked at but
- * by the full solve. report: max_error over the rows whose residual can have changed, iterations are sweeps, seconds_download and _upload the transfers of single
- * rows. Vertices that keep their points (corners, outside the subset, isolated) take the new ones in P as they are.
- * Edits far beyond the model's size need fields of doubles: the scale of floats is that of the first upload.
- * Errors and results as those of lcl_interpolate_field. Fields are as before if an argument is refused, and, unless the full solve has begun, if progress
- * cancels. */
+ * by the full solve. report: max_error over the rows whose residual can have changed, iterations are sweeps, seconds_download and _upload the transfers of
+ * single rows. Vertices that keep their points (corners, outside the subset, isolated) take the new ones in P as they are. Edits far beyond the model's size
+ * need fields of doubles: the scale of floats is that of the first upload. Errors and results as those of lcl_interpolate_field. Fields are as before if an
+ * argument is refused, and, unless the full solve has begun, if progress cancels. */
 LCL_API lcl_status lcl_solve_local(lcl_operator A, lcl_field M, lcl_field P, const int32_t* vertices, size_t count, const double* values,
                                    const lcl_solve_options* options, lcl_solve_report* report);
 /** lcl_interpolate on a thread of its own: arrays, options and report must live until lcl_task_wait. The context is busy until then. */
@@ -506,15 +506,15 @@ typedef struct lcl_rows {
     const int64_t* offsets; /**< row_count + 1, from 0 on */
     const int32_t* columns; /**< offsets[row_count] */
     const double* weights;  /**< as many */
-    const double* scaling;  /**< NULL, or D: row_count numbers above 0 with diag(D) A symmetric (identity rows, and columns of them, are left out of that), which
-                                 CG and GS, energies and even morphs need */
+    const double* scaling; /**< NULL, or D: row_count numbers above 0 with diag(D) A symmetric (identity rows, and columns of them, are left out of that), which
+                                CG and GS, energies and even morphs need */
 } lcl_rows;
 #define LCL_ROWS_INIT \
     { (uint32_t)sizeof(lcl_rows), 0, NULL, NULL, NULL, NULL }
 
-/** An operator from rows instead of a mesh: solves, series, filters and morphs take it like any other (mesh expansion paper, section 9: A may be any matrix with
- * eigenvalues in (0, 1]). Checked here: arrays, finite weights, symmetry of diag(D) A (to 1e-12 of its largest element), and the spectrum, by proof where the
- * rows allow one (Gershgorin) and else by an Arnoldi run of some 30 steps (in double on the host; without D a few seconds for a million rows).
+/** An operator from rows instead of a mesh: solves, series, filters and morphs take it like any other (mesh expansion paper, section 9: A may be any matrix
+ * with eigenvalues in (0, 1]). Checked here: arrays, finite weights, symmetry of diag(D) A (to 1e-12 of its largest element), and the spectrum, by proof where
+ * the rows allow one (Gershgorin) and else by an Arnoldi run of some 30 steps (in double on the host; without D a few seconds for a million rows).
  * LCL_ERROR_BAD_INPUT with the row where an array is wrong or D A is not symmetric; LCL_ERROR_UNSUPPORTED where an eigenvalue above 1, below 0 or not real was
  * found. An eigenvalue of 0 is no failure here: interpolation reports it as LCL_ERROR_SINGULAR. Without D: CG and GS are refused (LCL_ERROR_INVALID_ARGUMENT),
  * residuals may grow before they fall, and lcl_solve_local solves the whole. Where rows do not sum to 1, constants are no fixed points of the filters, and
@@ -525,8 +525,8 @@ typedef struct lcl_feature_options {
     uint32_t struct_size;
     double angle_degrees;   /**< 0: 20. Angle between the tangent planes at an edge's ends at which its weight has fallen to 1/e, at most 180 */
     double diagonal_factor; /**< 0: 2.5. D_ii = factor x sum of the weights at i; above 2, so that eigenvalues lie in [1 - 2 / factor, 1] */
-    int32_t smoothing;      /**< 0: 3; below 0: none; at most 1000. Applications of E - (E - A)^3, A of the default scheme, to the points from which the tangent
-                                 planes are taken */
+    int32_t smoothing;      /**< 0: 3; below 0: none; at most 1000. Applications of (E - (E - A)^3) A, A of the default scheme, to the points from which the
+                                 tangent planes are taken */
     const int32_t* subset;  /**< NULL, or the vertices that the filter may move: the others keep their points (identity rows) */
     size_t subset_count;
 } lcl_feature_options;
@@ -547,14 +547,17 @@ LCL_API lcl_status lcl_operator_create_features(lcl_context context, lcl_mesh me
  *
  * Functions come in two kinds: through host memory (n x channels, rows `stride` values apart, 0: channels; `out` may be the input), computed in double or pairs
  * of floats under LCL_PRECISION_MIXED and LCL_PRECISION_DOUBLE; and on fields that stay on the device (which must differ), computed in the fields' own type,
- * enqueued without waiting. Corners, isolated vertices and those outside the subset have A x = x: they are kept, or become 0 in terms that do not hold them.
- * They need no inverse: singular operators do as well. Operators with ghosts are refused (LCL_ERROR_UNSUPPORTED). */
+ * enqueued without waiting (lcl_spectrum_field waits, and so does all that is given a progress
+ * callback or more than 1024 passes). LCL_PRECISION_DOUBLE is refused on devices without double precision (LCL_ERROR_UNSUPPORTED). Corners, isolated vertices
+ * and those outside the subset have A x = x: they are kept, or become 0 in terms that do not hold them. They need no inverse: singular operators do as well.
+ * Operators with ghosts are refused (LCL_ERROR_UNSUPPORTED). */
 
 /** Passes done of all. Return 0 to cancel (LCL_ERROR_CANCELLED, outputs are as before), anything else to go on. */
 typedef int32_t (*lcl_pass_callback)(void* user, int64_t done, int64_t all);
 
-typedef LCL_ENUM(lcl_series){LCL_SERIES_REPRESENTATION = 0, /**< terms (E - A)^i A M, which sum to M; partial sums smooth */
-                             LCL_SERIES_INTERPOLATION = 1 /**< terms (E - A)^i M, which sum to P with A P = M; partial sums (the iterates of PIA) sharpen */
+typedef LCL_ENUM(lcl_series){
+    LCL_SERIES_REPRESENTATION = 0, /**< terms (E - A)^i A M, which sum to M; partial sums smooth */
+    LCL_SERIES_INTERPOLATION = 1   /**< terms (E - A)^i M, which sum to P with A P = M; partial sums (the iterates of PIA) sharpen */
 } lcl_series;
 
 typedef struct lcl_expand_options {
@@ -571,14 +574,17 @@ typedef struct lcl_expand_options {
 #define LCL_EXPAND_OPTIONS_INIT \
     { (uint32_t)sizeof(lcl_expand_options), LCL_SERIES_REPRESENTATION, LCL_PRECISION_MIXED, 0, 0, NULL, 0, 1.0, NULL, NULL }
 
-/** A weighted sum of terms. One pass a term up to the last one (one more for the representation series), none stored; three fields. */
-LCL_API lcl_status lcl_expand(lcl_operator A, const double* M, size_t stride, int32_t channels, const lcl_expand_options* options, double* out, size_t out_stride);
+/** A weighted sum of terms; out in the units of M, terms that leave out the first one round the origin. Terms i to j take j + 1 passes, n weights n at most;
+ * one less in the interpolation series. No term is stored: three fields. */
+LCL_API lcl_status lcl_expand(lcl_operator A, const double* M, size_t stride, int32_t channels, const lcl_expand_options* options, double* out,
+                              size_t out_stride);
 LCL_API lcl_status lcl_expand_field(lcl_operator A, lcl_field M, const lcl_expand_options* options, lcl_field out);
 
-/** Energies of the terms T_0 .. T_(term_count - 1) of the representation series, channel by channel: sum D_ii (T_i - mean)^2 / sum D_ii, D here the scaling that
- * makes D A symmetric, mean its weighted mean; isolated vertices are left out. energies: term_count x channels, squares of model units. One pass a term.
+/** Energies of the terms T_0 .. T_(term_count - 1) of the representation series, channel by channel: sum D_ii (T_i - mean)^2 / sum D_ii, D here the scaling
+ * that makes D A symmetric, mean its weighted mean; isolated vertices are left out. energies: term_count x channels, squares of model units. One pass a term.
  * LCL_ERROR_INVALID_ARGUMENT on rows without D. */
-LCL_API lcl_status lcl_spectrum(lcl_operator A, const double* M, size_t stride, int32_t channels, lcl_precision precision, int32_t term_count, double* energies);
+LCL_API lcl_status lcl_spectrum(lcl_operator A, const double* M, size_t stride, int32_t channels, lcl_precision precision, int32_t term_count,
+                                double* energies);
 LCL_API lcl_status lcl_spectrum_field(lcl_operator A, lcl_field M, int32_t term_count, double* energies);
 
 typedef struct lcl_denoise_options {
@@ -598,8 +604,8 @@ typedef struct lcl_denoise_options {
 LCL_API lcl_status lcl_denoise(lcl_operator A, const double* M, size_t stride, int32_t channels, const lcl_denoise_options* options, double* out,
                                size_t out_stride);
 LCL_API lcl_status lcl_denoise_field(lcl_operator A, lcl_field M, const lcl_denoise_options* options, lcl_field out);
-/** m and k in plain words: strength 0 (k = 0: nothing but A, or nothing at all where plain) to 1 (m = 1, k = 100), 0.5 the default m = 2, k = 3; the more, the
- * smoother. For noise of 0.1 mean edge lengths about 0.6, of 0.2 to 0.3 0.8 to 0.9, of more 0.9 to 1. */
+/** m and k in plain words, by tenths: strength 0 (k = 0: nothing but A, or nothing at all where plain) to 1 (m = 1, k = 100), 0.5 the default m = 2, k = 3; the
+ * more, the smoother. For noise of 0.1 mean edge lengths about 0.6, of 0.2 to 0.3 0.8 to 0.9, of more 0.9 to 1. */
 LCL_API lcl_status lcl_denoise_settings(double strength, int32_t* m, int32_t* k);
 /** Moves the points of every closed component along their normals (area-weighted), all by one distance, until the component encloses the volume that it had
  * with `points` (vertex_count rows of three, `stride` values apart, 0: 3). Corners and `fixed` vertices stay. A component that keeps no volume, or cannot reach
@@ -619,23 +625,24 @@ typedef struct lcl_sharpen_options {
 #define LCL_SHARPEN_OPTIONS_INIT \
     { (uint32_t)sizeof(lcl_sharpen_options), LCL_PRECISION_MIXED, 1, 3, 1, NULL, NULL }
 
-/** T_(k + 1) = T_k + sum (E - A)^i T_k over first..last (mesh expansion paper, section 6). k x last passes. An eigenvalue mu gains 1 + sum (1 - mu)^i a step, by
- * design without limit in k: at most (last - first + 2)^k in the D norm, which is the bound against blow-up: settings with more than 10^6 are refused
+/** T_(k + 1) = T_k + sum (E - A)^i T_k over first..last (mesh expansion paper, section 6). k x last passes. An eigenvalue mu gains 1 + sum (1 - mu)^i a step,
+ * by design without limit in k: at most (last - first + 2)^k in the D norm, which is the bound against blow-up: settings with more than 10^6 are refused
  * (LCL_ERROR_INVALID_ARGUMENT). */
 LCL_API lcl_status lcl_sharpen(lcl_operator A, const double* M, size_t stride, int32_t channels, const lcl_sharpen_options* options, double* out,
                                size_t out_stride);
 LCL_API lcl_status lcl_sharpen_field(lcl_operator A, lcl_field M, const lcl_sharpen_options* options, lcl_field out);
 
-typedef LCL_ENUM(lcl_morph_path){LCL_MORPH_RECURSION = 0, /**< m and rho as given */
-                                 LCL_MORPH_EVEN = 1,      /**< rho of each frame for equal steps, the last frame is the target itself */
-                                 LCL_MORPH_LINEAR = 2 /**< straight lines, for comparison */
+typedef LCL_ENUM(lcl_morph_path){
+    LCL_MORPH_RECURSION = 0, /**< m and rho as given */
+    LCL_MORPH_EVEN = 1,      /**< rho of each frame for equal steps, the last frame is the target itself */
+    LCL_MORPH_LINEAR = 2     /**< straight lines, for comparison */
 } lcl_morph_path;
 
 typedef struct lcl_morph_options {
     uint32_t struct_size;
     lcl_precision precision;
     lcl_morph_path path;
-    int32_t frames; /**< N, 1 to 1000000; 0: 10. Frames 0 (the start) to N are given out */
+    int32_t frames;   /**< N, 1 to 1000000; 0: 10. Frames 0 (the start) to N are given out */
     const int32_t* m; /**< m of the step to frame 1, 2, ..; the last is repeated; NULL: 2. 0 to 100000 */
     size_t m_count;
     const double* rho; /**< likewise, above 0 and up to 1; NULL: 0.5. Not with EVEN */
@@ -648,12 +655,14 @@ typedef struct lcl_morph_options {
 typedef int32_t (*lcl_frame_callback)(void* user, int32_t frame, double* points);
 
 /** Q_0 = from; Q_(k + 1) = to + rho D (Q_k - to) (mesh expansion paper, eq. 9; source slip: Q_k tends to `to` for rho < 1 only, for rho = 1 to a translation of
- * it). EVEN: rho_k = min(1, (1 - (k + 1)/N) |Q_0 - to|_D / |D (Q_k - to)|_D) over x, y, z, the last 0; where the 1 cuts, early steps are longer. The flat middle
- * shape of a mirror pair is not avoided. m + 1 passes a frame. A belongs to `from` or any mesh with its faces. */
+ * it). EVEN: rho_k = min(1, (1 - (k + 1)/N) |Q_0 - to|_D / |D (Q_k - to)|_D) over x, y, z, the last 0; where the 1 cuts, early steps are longer. The flat
+ * middle shape of a mirror pair is not avoided. m + 1 passes a frame. from, to: n x channels, rows `stride` values apart (0: channels), model units. A belongs
+ * to `from` or any mesh with its faces. LCL_ERROR_INVALID_ARGUMENT for options out of range, and for EVEN on rows without D; LCL_ERROR_BAD_INPUT for values
+ * that are not finite. */
 LCL_API lcl_status lcl_morph(lcl_operator A, const double* from, const double* to, size_t stride, int32_t channels, const lcl_morph_options* options,
                              lcl_frame_callback frame, void* user);
 /** One step on fields, for frames that stay on the device: difference becomes rho D difference, and frame to + difference. The first difference comes from
- * lcl_field_subtract(from, to, difference). */
+ * lcl_field_subtract(from, to, difference); LCL_ERROR_INVALID_ARGUMENT for another one, and for fields of different operators, shapes or types. */
 LCL_API lcl_status lcl_morph_field(lcl_operator A, int32_t m, double rho, lcl_field to, lcl_field difference, lcl_field frame);
 /** difference = a - b, of one operator, centre and scale (lcl_field_match); difference may be neither. */
 LCL_API lcl_status lcl_field_subtract(lcl_field a, lcl_field b, lcl_field difference);
@@ -662,16 +671,16 @@ LCL_API lcl_status lcl_mesh_compare_faces(lcl_mesh a, lcl_mesh b);
 
 typedef struct lcl_texture_options {
     uint32_t struct_size;
-    int32_t octaves;   /**< 0: 4; at most 20 */
-    int32_t levels;    /**< K refinements of the result, octaves - 1 at least; 0: so many */
-    double frequency;  /**< F, noise cells across the diagonal of the bounding box in the first octave; 0: 8. At most 2^32 in the last one */
+    int32_t octaves;  /**< 0: 4; at most 20 */
+    int32_t levels;   /**< K refinements of the result, octaves - 1 at least; 0: so many */
+    double frequency; /**< F, noise cells across the diagonal of the bounding box in the first octave; 0: 8. At most 2^32 in the last one */
     uint32_t seed;
     const double* colours; /**< colour_count x (red, green, blue) from 0 to 1; NULL: five of marble */
     size_t colour_count;
-    lcl_precision precision; /**< of the noise and of the solves */
-    double tolerance;        /**< of the solves, relative to the range of the noise; 0: 1e-6 */
-    int32_t max_iterations;  /**< 0: 200 */
-    int32_t keep_going;      /**< 1: take what the solves give although A is singular, indefinite or they did not converge; the status says so */
+    lcl_precision precision;        /**< of the noise and of the solves; points are always taken to the limit in double or pairs of floats */
+    double tolerance;               /**< of the solves, relative to the range of the noise; 0: 1e-6 */
+    int32_t max_iterations;         /**< 0: 200 */
+    int32_t keep_going;             /**< 1: take what the solves give although A is singular, indefinite or they did not converge; the status says so */
     lcl_progress_callback progress; /**< of the solves */
     void* progress_user;
 } lcl_texture_options;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "host/filter/noise.h"
+#include "host/apply/noise.h"
 
 #include <algorithm>
 #include <cmath>
