@@ -15,15 +15,6 @@ namespace {
 
 using Values = std::vector<double>;
 
-lcl_context shared_context() {
-    static const capi_test::Context context = [] {
-        lcl_context handle = nullptr;
-        capi_test::succeed(lcl_context_create(nullptr, &handle));
-        return capi_test::Context(handle);
-    }();
-    return context.get();
-}
-
 capi_test::Mesh read_mesh(const std::string& path) {
     lcl_mesh handle = nullptr;
     capi_test::succeed(lcl_mesh_read(path.c_str(), LCL_FORMAT_BY_ENDING, &handle));
@@ -52,12 +43,12 @@ class Plain {
 public:
     Plain(const std::string& path, const lcl_scheme_options& options) : mesh(read_mesh(path)), points(points_of(mesh.get())) {
         lcl_operator A = nullptr;
-        capi_test::succeed(lcl_operator_create(shared_context(), mesh.get(), &options, &A));
+        capi_test::succeed(lcl_operator_create(capi_test::default_context(), mesh.get(), &options, &A));
         read_rows(capi_test::Operator(A));
     }
     Plain(const std::string& path, const lcl_feature_options& options) : mesh(read_mesh(path)), points(points_of(mesh.get())) {
         lcl_operator A = nullptr;
-        capi_test::succeed(lcl_operator_create_features(shared_context(), mesh.get(), &options, &A));
+        capi_test::succeed(lcl_operator_create_features(capi_test::default_context(), mesh.get(), &options, &A));
         read_rows(capi_test::Operator(A));
     }
 

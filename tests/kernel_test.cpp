@@ -217,6 +217,8 @@ public:
             const SeriesSteps steps{third, {{0.75, 0.25, 0}, {1, -0.5, 0}}, {{0.5, 0.25, 0.25}}, repeated};
             const auto [values, bound] = expected_chain(steps, x_);
             const Field x = field(x_);
+            if (launching_.cache_bytes > 0)
+                CHECK(A_.phases(LCL_CHAIN, x, plan_->smooth, third == SeriesThird::input ? 3 : 2).width < plan_->smooth.block_count);
             Field out = field(d_), scratch = field(m_);
             CHECK(A_.series(steps, x, out, scratch));
             CHECK(difference(download(out), values.back()) <= bound);
@@ -519,6 +521,8 @@ TEST_CASE("every kernel runs once on a small mesh", "[kernel][tiny]") {
     check(device_context(), c, {16, 30}, 3, Real::single);
     check(device_context(), c, {16, 30}, 3, Real::wide);
     check(device_context(), c, {1, 8192}, 2, Real::single);
+    const Case torus{"sweeps that follow each other", shapes::torus_quads(17, 13), catmull_clark(), {}, {}};
+    check(device_context(), torus, {1, 4, 12000}, 3, Real::single);
 }
 
 TEST_CASE("results are the same bits in every run and for every shape of launch", "[kernel]") {
