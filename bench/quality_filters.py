@@ -10,8 +10,8 @@ from quality_measures import dot, edges_of, face_vectors, unit
 
 
 class Method:
-    """name; settings: (what to call it, function that takes (noisy points, faces) to (points, seconds)); on_closed: None, or a function that takes the words of the
-    best setting to one more, for closed meshes."""
+    """name; settings: (what to call it, function that takes (noisy points, faces) to (points, seconds)); on_closed: None, or a function that takes the words of
+    the best setting to one more, for closed meshes."""
 
     def __init__(self, name, settings, on_closed=None):
         self.name, self.settings, self.on_closed = name, settings, on_closed
@@ -65,9 +65,9 @@ def pymeshlab_methods(quick):
     taubin = [setting(f"lambda 0.5, mu {mu}, {n} steps", "apply_coord_taubin_smoothing", lambda_=0.5, mu=mu, stepsmoothnum=n)
               for mu, n in itertools.product((-0.53, -0.51), (20,) if quick else (5, 10, 20, 40, 80))]
     hc = [setting(f"{n} times", "apply_coord_hc_laplacian_smoothing", times=n) for n in ((2,) if quick else (1, 2, 4, 8, 16))]
+    values = [(60, 6, (2, 2))] if quick else itertools.product((60, 90), (6, 20), ((2, 2), (2, 1), (5, 1)))
     two_step = [setting(f"threshold {angle}, {rounds} x ({normals} + {fits}) steps", "apply_coord_two_steps_smoothing", stepsmoothnum=rounds, normalthr=angle,
-                        stepnormalnum=normals, stepfitnum=fits)
-                for angle, rounds, (normals, fits) in itertools.product((60,) if quick else (60, 90), (6,) if quick else (6, 20), ((2, 2),) if quick else ((2, 2), (2, 1), (5, 1)))]
+                        stepnormalnum=normals, stepfitnum=fits) for angle, rounds, (normals, fits) in values]
     return [Method("Laplacian (PyMeshLab)", laplacian), Method("Taubin (PyMeshLab)", taubin), Method("HC Laplacian (PyMeshLab)", hc),
             Method("two-step (PyMeshLab)", two_step)]
 
@@ -79,7 +79,8 @@ def vtk_methods(quick):
     def poly_data(points, faces):
         data, vertices, polygons = vtk.vtkPolyData(), vtk.vtkPoints(), vtk.vtkCellArray()
         vertices.SetData(numpy_to_vtk(points, deep=True))
-        polygons.SetData(numpy_to_vtkIdTypeArray(np.arange(0, 3 * len(faces) + 1, 3), deep=True), numpy_to_vtkIdTypeArray(faces.ravel().astype(np.int64), deep=True))
+        offsets, corners = np.arange(0, 3 * len(faces) + 1, 3), faces.ravel().astype(np.int64)
+        polygons.SetData(numpy_to_vtkIdTypeArray(offsets, deep=True), numpy_to_vtkIdTypeArray(corners, deep=True))
         data.SetPoints(vertices)
         data.SetPolys(polygons)
         return data
@@ -103,8 +104,9 @@ def vtk_methods(quick):
 
 def bilateral_normals(points, faces, reach, range_sigma, steps):
     """Bilateral normal filtering, local scheme (Zheng, Fu, Au, Tai 2011), in NumPy, as no package at hand has it.
-    Face normals: `steps` means over the faces that share a vertex, with weights area x exp(-distance^2 / 2 s^2) x exp(-|difference|^2 / 2 range_sigma^2), s `reach` times
-    the mean distance of neighbouring faces' centres. Then 20 steps of the vertices towards the planes of their faces (Sun et al. 2007); the boundary stays."""
+    Face normals: `steps` means over the faces that share a vertex, with weights area x exp(-distance^2 / 2 s^2) x exp(-|difference|^2 / 2 range_sigma^2), s
+    `reach` times the mean distance of neighbouring faces' centres. Then 20 steps of the vertices towards the planes of their faces (Sun et al. 2007); the
+    boundary stays."""
     corners = sparse.coo_matrix((np.ones(faces.size), (np.repeat(np.arange(len(faces)), 3), faces.ravel())), (len(faces), len(points))).tocsr()
     shared = (corners @ corners.T).tocoo()
     is_other, is_next = shared.row != shared.col, shared.data == 2
@@ -128,7 +130,8 @@ def bilateral_normals(points, faces, reach, range_sigma, steps):
 
 def bilateral_methods(quick):
     def setting(reach, range_sigma, steps):
-        return f"reach {reach}, sigma {range_sigma}, {steps} + 20 steps", lambda points, faces: timed(bilateral_normals, points, faces, reach, range_sigma, steps)
+        words = f"reach {reach}, sigma {range_sigma}, {steps} + 20 steps"
+        return words, lambda points, faces: timed(bilateral_normals, points, faces, reach, range_sigma, steps)
 
     values = [(1, 0.35, 10)] if quick else [(1, 0.35, 10), (1, 0.5, 10), (1, 0.5, 25), (2, 0.35, 10), (2, 0.35, 25), (2, 0.5, 10)]
     return [Method("bilateral normals (NumPy)", [setting(*three) for three in values])]
@@ -142,5 +145,5 @@ def methods(limitcl, quick, left_out):
         try:
             found += make(quick)
         except ImportError as error:
-            left_out.append(f"{package}: {error}")
+            left_out.append(f"the methods of {package}, which cannot be loaded: {error}")
     return found

@@ -68,7 +68,7 @@ class Surface:
         self.tree = cKDTree(triangles.mean(axis=1))
 
     def distances(self, points, exact):
-        """Exact: looks at more triangles until those left out are too far away to matter. Else at the six whose centres are nearest, which is right for most points."""
+        """Exact: looks at more triangles until those left out are too far away to matter. Else at the six whose centres are nearest, right for most points."""
         distances, todo, count = np.full(len(points), np.inf), np.arange(len(points)), 16 if exact else 6
         while len(todo):
             count = min(count, self.tree.n)
@@ -102,8 +102,8 @@ class Clean:
         """rms, max: distances of the vertices to the clean surface, mean edge lengths; of_diagonal: rms in units of the bounding box's diagonal.
         angle: between the normals of a face now and before the noise, degrees, mean over the faces.
         volume: change in percent, None with a boundary.
-        detail: with h_i the umbrella vector of vertex i (mean of its neighbours minus itself) along the clean mesh's normal: sum h_i h_i(clean) / sum h_i(clean)^2, the
-        share of the clean mesh's high frequencies that is there still. Noise does not count, as it has nothing to do with h(clean)."""
+        detail: with h_i the umbrella vector of vertex i (mean of its neighbours minus itself) along the clean mesh's normal: sum h_i h_i(clean) / sum
+        h_i(clean)^2, the share of the clean mesh's high frequencies that is there still. Noise does not count, as it has nothing to do with h(clean)."""
         distances = self.surface.distances(points[self.used], exact=True)
         angles = np.degrees(np.arccos(np.clip(dot(unit(face_vectors(points, self.faces)), self.directions), -1, 1)))
         return {
@@ -140,7 +140,8 @@ def measure_morph(frames, start, end, faces):
     folded: most faces in one frame that look against their surroundings and do so at neither end.
     left: what is missing to the end after the last frame, of the whole way (root mean squares over the vertices).
     step: the longest step between frames over the mean one.
-    fine: where half of the difference to the end is left, the share that is left of its umbrella vectors: 0.5 on straight lines, less where fine differences fade first."""
+    fine: where half of the difference to the end is left, the share that is left of its umbrella vectors: 0.5 on straight lines, less where fine differences
+    fade first."""
     ends = folded(start, faces) | folded(end, faces)
     steps = [np.linalg.norm(b - a) for a, b in zip(frames, frames[1:])]
     to_neighbours = umbrella(faces, len(start))

@@ -114,12 +114,13 @@ def profile(spacing):
     arc = lambda centre, radius, start, end: (lambda t: np.stack([centre[0] + radius * np.cos(t), centre[1] + radius * np.sin(t)], axis=1))(
         np.linspace(start, end, round(abs(end - start) * radius / spacing), endpoint=False))
     line = lambda a, b: np.linspace(a, b, round(float(np.hypot(*np.subtract(b, a))) / spacing), endpoint=False)
-    outline = [line((0, 0), (4, 0)), line((4, 0), (4, 1)), arc((4, 3), 2, -np.pi / 2, -np.pi), line((2, 3), (2, 4)), arc((1, 4), 1, 0, np.pi), line((0, 4), (0, 0))]
+    outline = [line((0, 0), (4, 0)), line((4, 0), (4, 1)), arc((4, 3), 2, -np.pi / 2, -np.pi), line((2, 3), (2, 4)), arc((1, 4), 1, 0, np.pi),
+               line((0, 4), (0, 0))]
     return [np.concatenate(outline), arc((1.1, 1.1), 0.6, 2 * np.pi, 0)]
 
 
 def part(spacing):
-    """A machined part: an outline of lines and arcs with a hole, extruded. Sharp straight and curved edges, convex and concave ones, and a smooth transition."""
+    """A machined part: an outline of lines and arcs with a hole, extruded. Sharp edges, straight and curved, convex and concave, and a smooth transition."""
     loops = profile(spacing)
     rim = np.concatenate(loops)
     lattice = np.stack(np.meshgrid(np.arange(0, 4, spacing), np.arange(0, 5, spacing * 3**0.5 / 2), indexing="ij"), axis=2)
@@ -197,16 +198,16 @@ def collection(name):
 
 
 def denoise_cases(quick, left_out):
-    """(name, clean points, noisy points, faces) one by one. The collection's noise is its own; the two files of trim-star were scaled to one box each, noise and
-    all, so that the noisy one is fitted to the clean one first."""
+    """(name, clean points, noisy points, faces) one by one. The collection's noise is its own; the two files of trim-star were scaled to one box each, noise
+    and all, so that the noisy one is fitted to the clean one first."""
     for name, (points, faces) in {"blob": blob(4 if quick else 5), "part": part(0.15 if quick else 0.1)}.items():
         yield f"{name}, 0.3", points, with_noise(points, faces, 0.3), faces
     if quick:
         return
     points, faces = ribbed_torus(120, 50)
     yield "torus, 0.2", points, with_noise(points, faces, 0.2), faces
-    pairs = [(name, f"{name}_Original", f"{name}_Noisy") for name in ("Block0.4", "Fandisk0.7", "SharpSphere0.3", "Bunny0.2")] + [("trim-star", "trim-star", "trim-star_noisy")]
-    for name, clean, noisy in pairs:
+    pairs = [(name, f"{name}_Original", f"{name}_Noisy") for name in ("Block0.4", "Fandisk0.7", "SharpSphere0.3", "Bunny0.2")]
+    for name, clean, noisy in [*pairs, ("trim-star", "trim-star", "trim-star_noisy")]:
         files = [collection(f"noisy/{file}.obj.gz") for file in (clean, noisy)]
         if None in files:
             left_out.append(f"{name}: LIMITCL_MESHES has no noisy/{clean}.obj.gz and {noisy}.obj.gz")
@@ -223,7 +224,8 @@ def morph_cases(quick, left_out):
     yield "eared head to the sphere turned by 120 degrees", head, turned(sphere, 120), faces
     points, faces = blob(4 if quick else 5)
     yield "blob to its mirror image", points, points * [-1, 1, 1], faces
-    pairs = {"cortex to sphere (fsaverage5)": ("fsaverage5_left_white.ply.gz", "fsaverage5_left_sphere.ply.gz"), "cheburashka, pose 1 to 9": ("cheburashka-01.obj.gz", "cheburashka-09.obj.gz")}
+    pairs = {"cortex to sphere (fsaverage5)": ("fsaverage5_left_white.ply.gz", "fsaverage5_left_sphere.ply.gz"),
+             "cheburashka, pose 1 to 9": ("cheburashka-01.obj.gz", "cheburashka-09.obj.gz")}
     for name, names in pairs.items():
         files = [collection(f"morph/{file}") for file in names]
         if None in files:

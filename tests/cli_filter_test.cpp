@@ -987,8 +987,7 @@ TEST_CASE("bad input of the filters is exit code 3 and says where", "[cli][exit]
 TEST_CASE("Ctrl-C ends a filter with nothing written", "[cli][exit]") {
     const Folder folder;
     folder.file("grid.obj", large_grid);
-    const pid_t child = start(folder, {program(), "expand", "grid.obj", "-o", "out.obj", "--sum", "100000", "--series", "interpolation", "--alpha", "0.5",
-                                       "--report", "report.json"});
+    const pid_t child = start(folder, {program(), "denoise", "grid.obj", "-o", "out.obj", "--m", "100000", "--k", "100000", "--report", "report.json"});
     CHECK(exit_code_after_interrupt(child, 1500) == 130);
     CHECK_FALSE(folder.has("out.obj"));
     CHECK(json::parse(folder.read("report.json")).at("status") == "cancelled");

@@ -26,7 +26,7 @@ std::vector<Part> DeviceOperator::series_parts() const {
 template <class Prepare>
 void DeviceOperator::run_series_chain(const SeriesSteps& steps, std::int64_t first, const Phases& phases, const Part& part,
                                       const std::array<const Field*, 3>& fields, const Prepare& prepare) {
-    const auto& [input, even, odd] = fields;
+    const Field *const input = fields[0], *const even = fields[1], *const odd = fields[2];
     std::vector<double> values;
     for (std::int64_t k = first; k < first + phases.sweeps; ++k) values.insert(values.end(), {steps[k].a, steps[k].b, steps[k].c});
     // By no queue: an upload would wait for launches that the caller may hold back.

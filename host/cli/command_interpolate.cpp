@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <optional>
 
@@ -38,10 +39,10 @@ lcl_solve_options solve_options(const Options& options, SolveProgress& state) {
     return solve;
 }
 
-/// The library builds kernels at their first use, somewhere in the upload or the solve: `compiled` seconds, taken off both in proportion.
-void note_seconds(Seconds& seconds, const lcl_solve_report& report, double compiled) {
-    const double both = report.seconds_upload + report.seconds_solve;
-    const double rest = both > compiled ? 1.0 - compiled / both : 0.0;
+/// The library builds kernels at their first use, somewhere in a call of `elapsed` seconds: `compiled` of them, taken off its parts in proportion.
+void note_seconds(Seconds& seconds, const lcl_solve_report& report, double elapsed, double compiled) {
+    const double all = elapsed - report.seconds_download;
+    const double rest = all > compiled ? 1.0 - compiled / all : 0.0;
     add_seconds(seconds.compile, compiled);
     add_seconds(seconds.upload, report.seconds_upload * rest);
     add_seconds(seconds.solve, report.seconds_solve * rest);
@@ -68,11 +69,13 @@ lcl_status solve(Job& job, lcl_context context, lcl_operator A, lcl_mesh mesh, c
     const double compiled = lcl_context_compile_seconds(context);
     check_interrupt();
     job.terminal.progress().begin("solving");
+    const auto start = std::chrono::steady_clock::now();
     const lcl_status status = interpolate(A, mesh, channels, options, report);
+    const double elapsed = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     job.terminal.progress().end();
     if (status != LCL_OK && !is_result(status)) throw failure_of(status);
     note_solve(job, report, std::move(residuals));
-    note_seconds(job.report.seconds, report, lcl_context_compile_seconds(context) - compiled);
+    note_seconds(job.report.seconds, report, elapsed, lcl_context_compile_seconds(context) - compiled);
     return status;
 }
 

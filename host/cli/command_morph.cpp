@@ -89,6 +89,12 @@ void warn_of_unused(Job& job) {
     }
 }
 
+/// For rho = 1 the mean of the difference never moves.
+void warn_of_no_end(Job& job, const lcl_morph_options& morph) {
+    if (morph.rho_count > 0 && std::all_of(morph.rho, morph.rho + morph.rho_count, [](double rho) { return rho == 1.0; }))
+        warn(job, "with rho 1 the frames tend to a translation of TO, and slowly: take a smaller --rho, or --even");
+}
+
 void require_same_faces(const Job& job, lcl_mesh from, lcl_mesh to) { check_of_file(shown_name(job.options.target), lcl_mesh_compare_faces(from, to)); }
 
 void require_channels(const Job& job, lcl_mesh to, const std::vector<std::string>& channels) {
@@ -124,6 +130,7 @@ void run_morph(Job& job) {
     const lcl_morph_options options = morph_options(job.options);
     note_morph(job, options);
     warn_of_unused(job);
+    warn_of_no_end(job, options);
     Filter filter = open_filter(job, device, std::move(from));
     require_channels(job, to.get(), filter.channels);
     write_frames(job, filter, gather_values(to.get(), filter.channels), options);

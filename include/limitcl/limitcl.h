@@ -605,7 +605,7 @@ LCL_API lcl_status lcl_denoise(lcl_operator A, const double* M, size_t stride, i
                                size_t out_stride);
 LCL_API lcl_status lcl_denoise_field(lcl_operator A, lcl_field M, const lcl_denoise_options* options, lcl_field out);
 /** m and k in plain words, by tenths: strength 0 (k = 0: nothing but A, or nothing at all where plain) to 1 (m = 1, k = 100), 0.5 the default m = 2, k = 3; the
- * more, the smoother. For noise of 0.1 mean edge lengths about 0.6, of 0.2 to 0.3 0.8 to 0.9, of more 0.9 to 1. */
+ * more, the smoother. For noise of 0.1 mean edge lengths about 0.8, of 0.2 to 0.3 0.9, of more 1. */
 LCL_API lcl_status lcl_denoise_settings(double strength, int32_t* m, int32_t* k);
 /** Moves the points of every closed component along their normals (area-weighted), all by one distance, until the component encloses the volume that it had
  * with `points` (vertex_count rows of three, `stride` values apart, 0: 3). Corners and `fixed` vertices stay. A component that keeps no volume, or cannot reach
