@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Handles that tests share are closed when all have run. Not by static destructors: where the program ends, OpenCL implementations take their own static objects
+// Handles that tests share are closed when all have run. Not by static destructors: where the program ends, OpenCL implementations take their static objects
 // and threads apart, oclgrind before ours go, and PoCL aborts over a kernel that it is still compiling.
 #pragma once
 
