@@ -95,11 +95,13 @@ LCL_API size_t lcl_last_error_faces(int32_t* faces, size_t capacity);
 
 /* ---------------------------------------------------------------- handles */
 
-typedef struct lcl_context_s* lcl_context;   /**< one OpenCL device with its queues and programs */
-typedef struct lcl_mesh_s* lcl_mesh;         /**< polygons, points, sharp features, and what a file carried beside them */
-typedef struct lcl_operator_s* lcl_operator; /**< the limit operator A of one mesh and scheme on one context */
-typedef struct lcl_field_s* lcl_field;       /**< n x c values that stay on a device */
-typedef struct lcl_task_s* lcl_task;         /**< a call that runs beside the caller */
+typedef struct lcl_context_s* lcl_context;             /**< one OpenCL device with its queues and programs */
+typedef struct lcl_mesh_s* lcl_mesh;                   /**< polygons, points, sharp features, and what a file carried beside them */
+typedef struct lcl_operator_s* lcl_operator;           /**< the limit operator A of one mesh and scheme on one context */
+typedef struct lcl_field_s* lcl_field;                 /**< n x c values that stay on a device */
+typedef struct lcl_task_s* lcl_task;                   /**< a call that runs beside the caller */
+typedef struct lcl_limit_surface_s* lcl_limit_surface; /**< the limit surface of a mesh as patches, with its control points on a context's device */
+typedef struct lcl_samples_s* lcl_samples;             /**< places on a limit surface, found once and evaluated often */
 
 /* ---------------------------------------------------------------- devices and contexts */
 
@@ -701,6 +703,77 @@ typedef struct lcl_texture_options {
  * not fit. Costs `octaves` solves of one channel, `levels` refinements on the host and one pass. */
 LCL_API lcl_status lcl_texture(lcl_context context, lcl_mesh mesh, const lcl_scheme_options* scheme, const lcl_texture_options* options, lcl_mesh* textured,
                                lcl_solve_report* report);
+
+/* ---------------------------------------------------------------- the limit surface itself */
+
+/* Places on the surface are (face, corner, u, v), face and corner of the mesh:
+ * - Catmull-Clark, quads: corner 0; (u, v) in [0, 1]^2 runs over the whole face, (0, 0) at its first vertex, u towards the second, v towards the last.
+ * - Catmull-Clark, other faces: the sub-quad at `corner`: (0, 0) at that vertex, (1, 0) the middle of the edge to the next vertex, (0, 1) the middle of the
+ *   edge to the previous one, (1, 1) the face's centre.
+ * - Loop: corner 0; barycentric weights (1 - u - v, u, v) on the face's three vertices, u, v >= 0, u + v <= 1.
+ * - Doo-Sabin: the patch of the vertex that the first refinement makes at `corner` of the face: (0, 0) the centre of the new face at the old vertex, (1, 0) of
+ *   the one on the edge to the next vertex, (0, 1) of the one on the edge to the previous vertex, (1, 1) of the one inside the old face. Where the edge to the
+ *   next vertex is sharp (boundary or crease), v runs from -1, the curve, to 1; where the one to the previous vertex is, u does.
+ * In all of them S_u x S_v points outwards. */
+
+/** Patches of the limit surface: regular ones are B-splines (Catmull-Clark bicubic, Doo-Sabin biquadratic) or box splines (Loop), those at extraordinary
+ * vertices and faces are infinite sequences of such, evaluated by the eigenstructure of the local subdivision (Stam 1998); at sharp features by its powers.
+ * Exact everywhere: no patch is replaced by another. alpha rules the first refinement, which is made explicitly. Time and memory linear in the mesh; the
+ * eigenstructures of the valences that occur are computed once a process. precision: that of control points and evaluation; MIXED is SINGLE here. The mesh's
+ * points are the first control points. Evaluation takes a few nanoseconds a point.
+ * LCL_ERROR_INVALID_ARGUMENT for lambda (a two-phase surface is evaluated through its mesh M^1), alpha_auto, subset and owned. */
+LCL_API lcl_status lcl_limit_surface_create(lcl_context context, lcl_mesh mesh, const lcl_scheme_options* scheme, lcl_precision precision,
+                                            lcl_limit_surface* surface);
+LCL_API void lcl_limit_surface_retain(lcl_limit_surface surface);
+LCL_API void lcl_limit_surface_release(lcl_limit_surface surface);
+/** New control points for the same faces: vertex_count rows of three, `stride` values apart (0: 3). Samples that were made before give values on the new
+ * surface from then on. */
+LCL_API lcl_status lcl_limit_surface_set_points(lcl_limit_surface surface, const double* points, size_t stride);
+
+/** Where values of a surface go. Arrays of the caller, packed, each NULL where it is not wanted; `type` is that of all. Units: model units by parameter. At an
+ * extraordinary point itself the derivatives by (u, v) do not exist: du and dv are unit limit tangents along the patch's two sides there, second derivatives
+ * and curvatures NaN. Where the surface has no tangent plane or a first derivative vanishes, what depends on it is NaN. */
+typedef struct lcl_surface_values {
+    uint32_t struct_size;
+    lcl_type type;
+    void* points;          /**< count x 3 */
+    void *du, *dv;         /**< count x 3: first derivatives */
+    void* normals;         /**< count x 3: unit, du x dv */
+    void *duu, *duv, *dvv; /**< count x 3: second derivatives */
+    void* gauss;           /**< count: Gaussian curvature */
+    void* mean;            /**< count: mean curvature, positive where the surface bends away from the outward normal (1/r on a sphere) */
+} lcl_surface_values;
+#define LCL_SURFACE_VALUES_INIT \
+    { (uint32_t)sizeof(lcl_surface_values), LCL_TYPE_DOUBLE, NULL, NULL, NULL, NULL, NULL, NULL, NULL, NULL, NULL }
+
+/** Finds the patches of `count` places and keeps them on the device, sorted by kind of patch: 20 to 28 bytes a place. faces: count; corners: count, NULL: all
+ * 0; uv: count x 2. LCL_ERROR_BAD_INPUT names the first place (by its index in the arrays, from 0) whose face, corner or (u, v) does not exist. */
+LCL_API lcl_status lcl_samples_create(lcl_limit_surface surface, size_t count, const int32_t* faces, const int32_t* corners, const double* uv,
+                                      lcl_samples* samples);
+LCL_API void lcl_samples_retain(lcl_samples samples);
+LCL_API void lcl_samples_release(lcl_samples samples);
+/** Values at all samples, in their order. */
+LCL_API lcl_status lcl_samples_evaluate(lcl_samples samples, const lcl_surface_values* values);
+/** The same in one call, piece by piece, so that memory does not grow with `count`. */
+LCL_API lcl_status lcl_limit_surface_evaluate(lcl_limit_surface surface, size_t count, const int32_t* faces, const int32_t* corners, const double* uv,
+                                              const lcl_surface_values* values);
+
+/** Closest points, each array the caller's or NULL. */
+typedef struct lcl_closest_points {
+    uint32_t struct_size;
+    int32_t *faces, *corners; /**< count */
+    double* uv;               /**< count x 2 */
+    double* points;           /**< count x 3 */
+    double* normals;          /**< count x 3: unit; NaN where there is none */
+    double* distances;        /**< count: signed, positive on the normal's side */
+} lcl_closest_points;
+#define LCL_CLOSEST_POINTS_INIT \
+    { (uint32_t)sizeof(lcl_closest_points), NULL, NULL, NULL, NULL, NULL, NULL }
+
+/** For each of `count` points (rows of three, `stride` values apart, 0: 3) the closest point of the limit surface: the nearest of a mesh refined to the limit,
+ * then Newton on the exact surface, across patch borders. A point of the boundary counts where nothing nearer is. Where the surface folds several times
+ * within the size of a refined face, a neighbouring local minimum may be found. LCL_ERROR_BAD_INPUT for points that are not finite. */
+LCL_API lcl_status lcl_limit_surface_closest(lcl_limit_surface surface, size_t count, const double* points, size_t stride, const lcl_closest_points* closest);
 
 #ifdef __cplusplus
 }
