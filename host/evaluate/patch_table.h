@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The limit surface of a mesh as patches: control points, kinds, and where a place (face, corner, u, v) lies.
+//
+// The mesh is refined explicitly until no patch has more than one extraordinary vertex (Doo-Sabin: face) and none but its corner (0, 0) touches sharp features
+// irregularly: Catmull-Clark twice (once where all faces are quads), Loop once, Doo-Sabin twice. alpha rules the first refinement.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "host/evaluate/patch_kind.h"
+#include "host/mesh/features.h"
+#include "host/mesh/topology.h"
+#include "host/refine/refine.h"
+
+namespace lcl {
+
+/// Derivatives by (u, v) from those by the patch's (s, t): S_u = su S_s + tu S_t, S_v = sv S_s + tv S_t.
+struct ParameterTurn {
+    double su = 1, tu = 0, sv = 0, tv = 1;
+};
+
+/// A place inside a patch.
+struct PatchPlace {
+    double s = 0, t = 0;
+    Index patch = 0;
+    std::int32_t turn = 0;  ///< of PatchTable::turns
+};
+
+/// Places as a caller gives them: limitcl.h, "the limit surface itself". corners may be null: all 0.
+struct Places {
+    std::size_t count = 0;
+    const Index* faces = nullptr;
+    const Index* corners = nullptr;
+    const double* uv = nullptr;
+};
+
+struct PatchTable {
+    Scheme scheme = Scheme::catmull_clark;
+    Index point_count = 0;           ///< points of the mesh
+    std::vector<Stencils> steps;     ///< the explicit refinements, one after the other: points of the refined mesh
+    Stencils ghosts;                 ///< rows over the points of the refined mesh: points across sharp edges, which follow them as control points
+    std::vector<Index> control;      ///< numbers of the control points of every patch, one patch after the other
+    std::vector<Index> patch_begin;  ///< patch_count + 1, in `control`
+    std::vector<std::int32_t> kind;  ///< patch_count: -1 regular, else of `kinds`
+    std::vector<PatchKind> kinds;    ///< each is used
+    std::vector<ParameterTurn> turns;
+    // What locating needs.
+    int levels = 0;                         ///< explicit refinements
+    std::vector<Index> face_begin;          ///< face_count + 1: first corner of each face of the mesh
+    std::vector<Index> patch_of_domain;     ///< Doo-Sabin: patches of each domain; empty where they follow from the number of the face
+    std::vector<std::uint8_t> sharp_sides;  ///< Doo-Sabin, per corner: 1 where the edge to the next vertex is sharp, 2 where that to the previous one is
+
+    Index patch_count() const { return static_cast<Index>(patch_begin.size()) - 1; }
+    Index refined_count() const { return steps.empty() ? point_count : static_cast<Index>(steps.back().offsets.size() - 1); }
+    Index control_count() const { return refined_count() + static_cast<Index>(ghosts.offsets.size() - 1); }
+};
+
+/// lambda of `options` must be 0. Linear time. BadInput as refine_once.
+PatchTable build_patch_table(const PolygonMesh& mesh, const Topology& topology, const Features& features, const SchemeOptions& options);
+
+/// Finds places begin .. end - 1 of `places`; out: one each, from out[0] on. BadInput "place 17: ..." for the first that does not exist; not finite (u, v) do
+/// not exist.
+void locate(const PatchTable& table, const Places& places, std::size_t begin, std::size_t end, PatchPlace* out);
+
+/// All control points (control_count x channels) from the mesh's points (point_count x channels), in double on the host.
+std::vector<double> control_points(const PatchTable& table, const std::vector<double>& points, int channels);
+
+/// Of each scheme: fills the table (all but scheme and point_count), and locates.
+void add_catmull_clark_patches(const PolygonMesh& mesh, const Topology& topology, const Features& features, const SchemeOptions& options, PatchTable& table);
+void add_loop_patches(const PolygonMesh& mesh, const Topology& topology, const Features& features, const SchemeOptions& options, PatchTable& table);
+void add_doo_sabin_patches(const PolygonMesh& mesh, const Topology& topology, const Features& features, const SchemeOptions& options, PatchTable& table);
+void locate_catmull_clark(const PatchTable& table, const Places& places, std::size_t begin, std::size_t end, PatchPlace* out);
+void locate_loop(const PatchTable& table, const Places& places, std::size_t begin, std::size_t end, PatchPlace* out);
+void locate_doo_sabin(const PatchTable& table, const Places& places, std::size_t begin, std::size_t end, PatchPlace* out);
+
+}  // namespace lcl
