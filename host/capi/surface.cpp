@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
+#include <cmath>
 
 #include "host/capi/arguments.h"
 #include "host/capi/surface_handle.h"
@@ -47,9 +48,11 @@ lcl_status lcl_limit_surface_create(lcl_context context, lcl_mesh mesh, const lc
         required(surface, "surface");
         required(context, "context");
         required(mesh, "mesh");
-        const Real real = inner_precision(precision) == Precision::full ? Real::full : Real::single;
+        const Precision asked = inner_precision(precision);
+        const bool is_double = asked == Precision::full || (asked == Precision::mixed && context->context->device().has_double);
+        const Real real = is_double ? Real::full : Real::single;
         auto out = std::make_unique<lcl_limit_surface_s>(
-            context, DeviceSurface(context->context, table_of(*mesh, options_or(scheme, LCL_SCHEME_OPTIONS_INIT, "scheme")), real));
+            context, mesh, DeviceSurface(context->context, table_of(*mesh, options_or(scheme, LCL_SCHEME_OPTIONS_INIT, "scheme")), real));
         out->surface.set_points(mesh->file.mesh.positions.data(), 3);
         *surface = out.release();
         return LCL_OK;
@@ -64,6 +67,7 @@ lcl_status lcl_limit_surface_set_points(lcl_limit_surface surface, const double*
         required(surface, "surface");
         if (stride != 0) check_channels(3, stride, "stride");
         surface->surface.set_points(required(points, "points"), stride == 0 ? 3 : stride);
+        surface->search.reset();
         return LCL_OK;
     });
 }
@@ -105,6 +109,23 @@ lcl_status lcl_limit_surface_evaluate(lcl_limit_surface surface, size_t count, c
             surface->surface.make_samples(places, first, piece, samples);
             surface->surface.evaluate(samples, to);
         });
+        return LCL_OK;
+    });
+}
+
+lcl_status lcl_limit_surface_closest(lcl_limit_surface surface, size_t count, const double* points, size_t stride, const lcl_closest_points* closest) {
+    return guarded([&] {
+        required(surface, "surface");
+        const lcl_closest_points to = options_or(required(closest, "closest"), LCL_CLOSEST_POINTS_INIT, "closest");
+        if (count == 0) return LCL_OK;
+        required(points, "points");
+        if (stride != 0) check_channels(3, stride, "stride");
+        const std::size_t step = stride == 0 ? 3 : stride;
+        for (std::size_t i = 0; i < count; ++i)
+            for (std::size_t c = 0; c < 3; ++c)
+                if (!std::isfinite(points[i * step + c])) throw BadInput("point " + std::to_string(i) + " is not finite: correct or remove it");
+        if (!surface->search) surface->search = std::make_unique<ClosestSearch>(surface->surface, surface->mesh->topology());
+        surface->search->find(points, step, count, {to.faces, to.corners, to.uv, to.points, to.normals, to.distances});
         return LCL_OK;
     });
 }

@@ -6,7 +6,7 @@
 #include <limits>
 #include <string>
 
-#include "host/apply/real_values.h"
+#include "host/device/dense_product.h"
 #include "host/parallel.h"
 
 namespace lcl {
@@ -178,10 +178,24 @@ LaunchSize DeviceSurface::lanes(std::size_t count, std::size_t second) const {
     return {(count + local - 1) / local * local, local, second};
 }
 
+/// c = projection C for all patches of every kind.
 void DeviceSurface::project() {
-    for (Kind& kind : kinds_)
-        launch(*context_, kernel("lcl_project"), lanes(static_cast<std::size_t>(kind.patch_count), static_cast<std::size_t>(kind.table.mode_count)),
-               kind.patch_count, static_cast<cl_int>(kind.table.point_count), kind.numbers, kind.projection, kind.control_buffer, points_, coefficients_);
+    const std::size_t number_bytes = real_ == Real::full ? sizeof(double) : sizeof(float);
+    for (Kind& kind : kinds_) {
+        const std::size_t M = static_cast<std::size_t>(kind.table.mode_count), K = static_cast<std::size_t>(kind.table.point_count),
+                          count = static_cast<std::size_t>(kind.patch_count);
+        const cl_int points = static_cast<cl_int>(K);
+        if (has_dense_product(M, K, 4 * count)) {
+            const Buffer gathered(context_, K * count * 4 * number_bytes, "control points of irregular patches");
+            launch(*context_, kernel("lcl_gather"), lanes(count, K), kind.patch_count, points, kind.control_buffer, points_, gathered);
+            dense_product(*context_, real_ == Real::full, M, K, 4 * count, kind.projection, gathered, coefficients_,
+                          4 * std::size_t{kind.numbers.first_coefficient});
+            context_->finish();  // `gathered` is in use
+        } else {
+            launch(*context_, kernel("lcl_project"), lanes(count, M), kind.patch_count, points, kind.numbers, kind.projection, kind.control_buffer, points_,
+                   coefficients_);
+        }
+    }
 }
 
 std::size_t DeviceSurface::expanded_cells() const {

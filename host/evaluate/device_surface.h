@@ -41,6 +41,7 @@ public:
     DeviceSurface(std::shared_ptr<Context> context, PatchTable table, Real real);
 
     const PatchTable& table() const { return table_; }
+    double size() const { return scale_; }  ///< diagonal of the bounding box of the control points
     /// points: point_count rows of three, `stride` values apart. BadInput where they are not finite.
     void set_points(const double* points, std::size_t stride);
     /// For batches of so many samples: where there are many to a patch, the outer rings of irregular patches become regular patches, once.
