@@ -5,7 +5,7 @@
 #include <catch2/catch.hpp>
 
 #include "host/evaluate/doo_sabin_walk.h"
-#include "host/evaluate/modes.h"
+#include "tests/modes_support.h"
 #include "tests/patch_checks.h"
 
 using namespace lcl;
@@ -157,13 +157,43 @@ TEST_CASE("Doo-Sabin derivatives are those of the positions, by the corner's own
     }
 }
 
+TEST_CASE("Doo-Sabin patches deep at their tip are those of the refined mesh", "[evaluate][doo-sabin]") {
+    // (u, v) next to the centre of a vertex's face is (1 - 2u, 1 - 2v) at the corner of that face which the refined vertex is, next to (1, 1).
+    shapes::Shape corner = fan(5);
+    corner.features.corners = {0};
+    for (const DooSabinMask mask : {DooSabinMask::catmull, DooSabinMask::classic}) {
+        std::vector<shapes::Shape> all{fan(4), corner};
+        for (int n = 3; n <= 12; ++n) all.push_back(trapezohedron(n));
+        for (const auto& shape : all) {
+            const Refinement refined = refine(shape.mesh, shape.features, doo_sabin(mask), 1);
+            const Surface surface(shape, doo_sabin(mask)), fine({shape.name, refined.mesh, refined.features}, doo_sabin(mask));
+            for (Index h = 0; h < surface.topology.half_edge_count(); ++h) {
+                const Index face = surface.topology.half_edge_face[h], k = h - surface.topology.face_offsets[face];
+                const Index across = fine.topology.rotate(fine.topology.rotate(h)), fine_face = fine.topology.half_edge_face[across];
+                const Index fine_k = across - fine.topology.face_offsets[fine_face];
+                for (const double scale : {0.25, 0x1p-10, 0x1p-20}) {
+                    for (const auto& [u, v] : {std::array<double, 2>{0.8125, 0.1875}, {0.625, 0.75}, {0.1875, 0.8125}, {0, 0.6875}}) {
+                        const Jet whole = surface.jet({face, k, scale * u, scale * v});
+                        const Jet child = patches::turned(fine.jet({fine_face, fine_k, 1 - 2 * scale * u, 1 - 2 * scale * v}), -2, 0, 0, -2);
+                        CAPTURE(shape.name, face, k, scale, u, v, whole, child);
+                        patches::check_same(whole, child, scale);
+                    }
+                }
+            }
+        }
+    }
+}
+
 TEST_CASE("the eigenstructure of every Doo-Sabin kind is found, the classic mask's with its chains", "[evaluate][doo-sabin][modes]") {
     for (const DooSabinMask mask : {DooSabinMask::catmull, DooSabinMask::classic}) {
         for (int n = 3; n <= 50; ++n) {
             if (n == 4) continue;
-            const std::optional<Modes> modes = find_modes(doo_sabin_kind(n, mask));
+            const PatchKind kind = doo_sabin_kind(n, mask);
+            const std::optional<Modes> modes = find_modes(kind);
             CAPTURE(n, mask == DooSabinMask::classic);
             REQUIRE(modes);
+            modes_support::check_kind(kind);
+            modes_support::check_modes(kind, *modes);
             bool has_chain = false;
             for (const std::uint8_t power : modes->powers) has_chain |= power == 1;
             CHECK(has_chain == (mask == DooSabinMask::classic && n >= 5));

@@ -6,7 +6,7 @@
 #include <catch2/catch.hpp>
 
 #include "host/evaluate/loop_walk.h"
-#include "host/evaluate/modes.h"
+#include "tests/modes_support.h"
 #include "tests/patch_checks.h"
 
 using namespace lcl;
@@ -134,6 +134,28 @@ TEST_CASE("Loop derivatives are those of the positions, by the face's own parame
     }
 }
 
+TEST_CASE("Loop patches deep at their tip are those of the refined mesh", "[evaluate][loop]") {
+    // Three explicit refinements against three more powers of the kind's step: (u, v) of a face is (8u, 8v) of its child at the first corner.
+    std::vector<shapes::Shape> all{fan(2), fan(5)};
+    for (int n = 3; n <= 12; ++n) all.push_back(double_pyramid(n));
+    for (const int n : {4, 6, 9})
+        for (const auto& shape : with_sharp_poles(n)) all.push_back(shape);
+    for (const auto& shape : all) {
+        const Refinement refined = refine(shape.mesh, shape.features, loop(), 3);
+        const Surface surface(shape, loop()), fine({shape.name, refined.mesh, refined.features}, loop());
+        for (Index face = 0; face < shape.mesh.face_count(); ++face) {
+            for (const double scale : {0.1, 1e-3, 1e-6}) {
+                for (const auto& [u, v] : {std::array<double, 2>{0.8, 0.1}, {0.45, 0.4}, {0.1, 0.8}, {0, 0.6}}) {
+                    const Jet whole = surface.jet({face, 0, scale * u, scale * v});
+                    const Jet child = patches::turned(fine.jet({64 * face, 0, 8 * scale * u, 8 * scale * v}), 8, 0, 0, 8);
+                    CAPTURE(shape.name, face, scale, u, v, whole, child);
+                    patches::check_same(whole, child, scale);
+                }
+            }
+        }
+    }
+}
+
 TEST_CASE("regular Loop patches at sharp features need no kinds", "[evaluate][loop]") {
     // Three faces between two sharp edges, one at a corner, six at smooth vertices.
     const Surface triangle(shapes::single_triangle(), loop());
@@ -158,6 +180,8 @@ TEST_CASE("the eigenstructure of every closed Loop kind is found, valence 3 with
         const std::optional<Modes> modes = find_modes(kind);
         CAPTURE(n);
         REQUIRE(modes);
+        modes_support::check_kind(kind);
+        modes_support::check_modes(kind, *modes);
         bool has_chain = false;
         for (const std::uint8_t power : modes->powers) has_chain |= power == 1;
         CHECK(has_chain == (n == 3));

@@ -103,4 +103,12 @@ Jet turned(const Jet& jet, double ua, double ub, double va, double vb) {
     return out;
 }
 
+void check_same(const Jet& a, const Jet& b, double distance) {
+    const Eigen::VectorXd difference = (a - b).rowwise().norm(), size = a.rowwise().norm();
+    const double first = size.segment(1, 2).maxCoeff(), second = size.segment(3, 3).maxCoeff();
+    REQUIRE(difference[0] < 1e-14);
+    REQUIRE(difference.segment(1, 2).maxCoeff() < 1e-12 * (1 + first));
+    REQUIRE(difference.segment(3, 3).maxCoeff() < 1e-12 * (1 + second) + 1e-14 * first / distance);
+}
+
 }  // namespace patches
