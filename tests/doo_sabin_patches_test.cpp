@@ -69,10 +69,9 @@ void check_continuity(const Surface& surface) {
         return surface.jet({face, h - topology.face_offsets[face], a, b});
     };
     const auto agree = [&](const Jet& here, const Jet& there, Index h, double x) {
-        CAPTURE(surface.shape.name, topology.half_edge_face[h], h, x, here, there);
-        REQUIRE((here.row(0) - there.row(0)).norm() < 1e-14);
-        REQUIRE((here.row(1) - there.row(1)).norm() < 1e-12);
-        REQUIRE((here.row(2) - there.row(2)).norm() < 1e-12);
+        if ((here.row(0) - there.row(0)).norm() < 1e-14 && (here - there).middleRows(1, 2).norm() < 1e-12) return;
+        CAPTURE(surface.shape.name, topology.half_edge_face[h], h, x);
+        REQUIRE(here == there);
     };
     for (Index h = 0; h < topology.half_edge_count(); ++h) {
         const bool next_is_sharp = surface.table.square_beyond(h, 0) >= 0, previous_is_sharp = surface.table.square_beyond(h, 1) >= 0;
@@ -175,8 +174,9 @@ TEST_CASE("Doo-Sabin patches deep at their tip are those of the refined mesh", "
                     for (const auto& [u, v] : {std::array<double, 2>{0.8125, 0.1875}, {0.625, 0.75}, {0.1875, 0.8125}, {0, 0.6875}}) {
                         const Jet whole = surface.jet({face, k, scale * u, scale * v});
                         const Jet child = patches::turned(fine.jet({fine_face, fine_k, 1 - 2 * scale * u, 1 - 2 * scale * v}), -2, 0, 0, -2);
-                        CAPTURE(shape.name, face, k, scale, u, v, whole, child);
-                        patches::check_same(whole, child, scale);
+                        if (patches::is_same(whole, child, scale)) continue;
+                        CAPTURE(shape.name, face, k, scale, u, v);
+                        REQUIRE(whole == child);
                     }
                 }
             }

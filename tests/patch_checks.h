@@ -55,6 +55,6 @@ Jet turned(const Jet& jet, double ua, double ub, double va, double vb);
 /// Two ways to the same jet at a place about `distance` from a tip: points to 1e-14, derivatives to 1e-12 of the largest of their order (the rounding of
 /// control points has derivatives that grow towards the tip as those of any points), second ones also but for the rounding of first ones over the distance:
 /// where modes that have no second derivatives shrink more slowly than the others.
-void check_same(const Jet& a, const Jet& b, double distance);
+bool is_same(const Jet& a, const Jet& b, double distance);
 
 }  // namespace patches
