@@ -14,6 +14,7 @@ namespace {
 
 constexpr double fair_tolerance = 1e-8;  // of the residual, relative to its start: of the energy some 1e-16
 constexpr int most_fair_iterations = 1000;
+constexpr double runaway_growth = 10;  // of the residual, where the solvers give up too
 constexpr double unit_length_slack = 1e-5;  // what six decimals of a text leave
 
 /// 1 where the limit point is Q: everywhere but at vertices outside the subset, whose rows are identity rows although they are neither corners nor isolated.
@@ -214,7 +215,7 @@ FairRows fair_rows_of(const Refinement& refined) {
 
 bool can_be_repaired(const SolveReport& report) {
     if (report.status == SolveStatus::converged) return true;
-    return report.status == SolveStatus::not_converged && !report.residuals.empty() && report.max_error <= report.residuals.front();
+    return report.status == SolveStatus::not_converged && !report.residuals.empty() && report.max_error <= runaway_growth * report.residuals.front();
 }
 
 TwoPhase interpolate_two_phase(LimitSystem& system, const PolygonMesh& mesh, const Topology& topology, const Features& features, const FeatureOptions& named,

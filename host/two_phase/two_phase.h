@@ -46,7 +46,7 @@ struct TwoPhase {
 
 /// `system`: of `mesh` (or of another one with its faces), Catmull-Clark with blend ratios above 0 and below 1; vertices outside its subset are not constrained.
 /// `further`: channels of the vertices, interpolated like the positions where `is_interpolated` says so (one flag a channel), refined in any case.
-/// - P: A_lambda P = Q. A solve that did not converge, but ended nearer than it began, does: the rest is repaired.
+/// - P: A_lambda P = Q. A solve that did not converge does too, unless it ran away: the rest is repaired.
 /// - Repair: each umbrella of a vertex of the subset is moved by the least-norm step to its limit point Q and, where there is a normal, its tangent plane.
 /// - Fairness: X that minimises |X - X_0|^2 + W |L X|^2 under the same constraints, X_0 the repaired M^1, by projected conjugate gradients.
 /// - Handles come last, so that S scales the umbrella of the fair surface: a fairness after them would take much of it back. They change neither limit points nor planes.
@@ -54,7 +54,7 @@ struct TwoPhase {
 TwoPhase interpolate_two_phase(LimitSystem& system, const PolygonMesh& mesh, const Topology& topology, const Features& features, const FeatureOptions& named,
                                const FurtherChannels& further, const std::vector<std::uint8_t>& is_interpolated, const TwoPhaseOptions& options);
 
-/// What such a solve leaves can be repaired: it converged, or ended nearer than it began.
+/// What such a solve leaves can be repaired: it converged, or did not run away.
 bool can_be_repaired(const SolveReport& report);
 
 }  // namespace lcl

@@ -555,7 +555,7 @@ typedef struct lcl_two_phase_report {
  * and properties; texture coordinates are dropped with a note. Vertices outside the subset of A are not constrained.
  * A: of `mesh` or one with its faces, Catmull-Clark with lambda above 0 and below 1 at every vertex (else LCL_ERROR_INVALID_ARGUMENT). `mesh` is not changed.
  * solve: as for lcl_interpolate, but warm_start; its progress is also called by fairness, whose residuals go in model units. LCL_OK also where the solve did
- * not converge but ended nearer than it began, as solve_report tells; LCL_ERROR_SINGULAR, _INDEFINITE, _NOT_CONVERGED otherwise, and `refined` is only made
+ * not converge, as solve_report tells, but did not run away either (to ten times its first residual); LCL_ERROR_SINGULAR, _INDEFINITE, _NOT_CONVERGED otherwise, and `refined` is only made
  * with keep_going. LCL_ERROR_BAD_INPUT, with the vertex, for a normal that cannot be asked for. Reports may be NULL. On devices without double precision steps
  * 2 to 5 run on the host. Linear time but for the solve; some 400 bytes a vertex of M^1 (of which a mesh of quads has nine times its own), three times that
  * with fairness. */
