@@ -101,14 +101,12 @@ PatchPlace place_in(Index face, double u, double v) {
 
 }  // namespace
 
-void add_loop_patches(const PolygonMesh& mesh, const Topology& topology, const Features& features, const SchemeOptions& options, PatchTable& table) {
-    table.levels = 1;
-    Refinement refined = refine_once(mesh, topology, features, options);
-    table.steps.push_back(std::move(refined.stencils));
+void add_loop_patches(const Topology& topology, const Features& features, const SchemeOptions& options, PatchTable& table) {
+    table.refiner = std::make_shared<Refiner>(topology, features, options, 1);
     table.face_begin.assign(topology.face_offsets.begin(), topology.face_offsets.end());
     table.turns.assign(std::begin(child_turns), std::end(child_turns));
-    const Topology fine = build_topology(refined.mesh);
-    PatchBuilder(fine, find_features(refined.mesh, fine, refined.features), table).build();
+    const Topology fine = table.refiner->finest_topology();
+    PatchBuilder(fine, table.refiner->finest_features(fine), table).build();
 }
 
 void locate_loop(const PatchTable& table, const Places& places, std::size_t begin, std::size_t end, PatchPlace* out) {
