@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // speed_opensubdiv PART: limit points of all vertices by OpenSubdiv, in float, beside limitcl's apply ("apply": its stencil tables on the shape one level
-// coarser, which bench/run scales), and what it sets up for them beside limitcl's set-up ("refiner": TopologyRefiner; "stencils": limit stencil table).
+// coarser, which bench/run scales), and what it sets up for them beside limitcl's set-up ("refiner": TopologyRefiner; "stencils": limit stencil table);
+// "refine": the shape from one four levels coarser, by TopologyRefiner and PrimvarRefiner.
 #include <opensubdiv/far/primvarRefiner.h>
 #include <opensubdiv/far/stencilTableFactory.h>
 #include <opensubdiv/far/topologyDescriptor.h>
@@ -149,6 +150,72 @@ void race_refiner(const Arguments& arguments) {
     });
 }
 
+constexpr int refined_levels = 4;
+
+/// Topology of all levels; the last one in full, or with what positions need alone, OpenSubdiv's default.
+Refiner refine_by_opensubdiv(const Shape& shape, bool is_full) {
+    Refiner refiner = make_refiner(shape);
+    Far::TopologyRefiner::UniformOptions options(refined_levels);
+    options.fullTopologyInLastLevel = is_full;
+    refiner->RefineUniform(options);
+    return refiner;
+}
+
+/// Positions of all levels, one after the other; the last ones are the result.
+void interpolate_by_opensubdiv(const Far::TopologyRefiner& refiner, std::vector<Point>& points) {
+    const Far::PrimvarRefiner values(refiner);
+    Point* from = points.data();
+    for (int level = 1; level <= refined_levels; ++level) {
+        Point* const to = from + refiner.GetLevel(level - 1).GetNumVertices();
+        values.Interpolate(level, from, to);
+        from = to;
+    }
+}
+
+void race_refine(const Arguments& arguments) {
+    const Shape shape = quad_sphere(std::max(0, arguments.level - refined_levels));
+    const ContextHandle context = open_device(arguments.device);
+    const MeshHandle mesh = make_mesh(shape);
+    lcl_scheme_options scheme = LCL_SCHEME_OPTIONS_INIT;
+    scheme.scheme = LCL_SCHEME_CATMULL_CLARK;
+    lcl_refine_options levels = LCL_REFINE_OPTIONS_INIT;
+    levels.levels = refined_levels;
+    std::vector<double> ours;
+    std::vector<Point> points;
+    Refiner peer;
+    run_rounds(arguments.runs, [&](Laps& laps) {
+        rest();
+        limitcl::RefinerHandle refiner;
+        const auto apply = [&] { check(lcl_refiner_apply(refiner.get(), shape.points.data(), 0, 3, LCL_PRECISION_SINGLE, ours.data(), 0)); };
+        laps.time("refine.limitcl", [&] {
+            lcl_refiner made = nullptr;
+            check(lcl_refiner_create(context.get(), mesh.get(), &scheme, &levels, &made));
+            refiner = limitcl::RefinerHandle(made);
+            ours.resize(3 * static_cast<std::size_t>(lcl_refiner_vertex_count(made)));
+            apply();
+        });
+        laps.time("refine.limitcl.again", apply);
+        laps.time("refine.limitcl.mesh", [&] {
+            lcl_mesh refined = nullptr;
+            check(lcl_mesh_refine(mesh.get(), &scheme, &levels, &refined));
+            lcl_mesh_release(refined);
+        });
+        laps.time("refine.full", [&] {
+            peer = refine_by_opensubdiv(shape, true);
+            points.resize(peer->GetNumVerticesTotal());
+            for (std::int32_t v = 0; v < shape.vertex_count(); ++v) std::copy_n(&shape.points[3 * v], 3, points[v].x);
+            interpolate_by_opensubdiv(*peer, points);
+        });
+        laps.time("refine.lean", [&] {
+            peer = refine_by_opensubdiv(shape, false);
+            interpolate_by_opensubdiv(*peer, points);
+        });
+        laps.time("refine.again", [&] { interpolate_by_opensubdiv(*peer, points); });
+    });
+    print_value("refine.vertices", static_cast<double>(ours.size() / 3));
+    print_value("refine.from", shape.vertex_count());
+}
+
 /// The table alone, from a TopologyRefiner that is there: as cheap as it gives limit points, and with one refinement as for points inside faces.
 void time_stencils(const Arguments& arguments) {
     const Shape shape = quad_sphere(arguments.level);
@@ -172,6 +239,7 @@ void run_part(const Arguments& arguments) {
     if (arguments.part == "apply") race_apply(arguments);
     else if (arguments.part == "refiner") race_refiner(arguments);
     else if (arguments.part == "stencils") time_stencils(arguments);
+    else if (arguments.part == "refine") race_refine(arguments);
     else throw std::runtime_error("'" + arguments.part + "' is not a part");
 }
 

@@ -330,6 +330,19 @@ TEST_CASE("refined vertices keep their numbers and know their places", "[cpp][re
     CHECK(status_of([] { refine(cube(), -1); }) == LCL_ERROR_INVALID_ARGUMENT);
 }
 
+TEST_CASE("a refiner refines points and channels of one mesh again and again", "[cpp][refine]") {
+    const Mesh refined = refine(cube(), 2);
+    const Refiner refiner(Context(), cube(), 2);
+    REQUIRE(refiner.vertex_count() == refined.vertex_count());
+    CHECK(refiner.mesh().points() == refined.points());
+    const std::vector<double> points = refined.points(), found = refiner.apply(cube_points), ones = refiner.apply(std::vector<double>(8 * 5, 1.0), 5);
+    REQUIRE(found.size() == points.size());
+    for (std::size_t i = 0; i < points.size(); ++i) CHECK(std::abs(found[i] - points[i]) <= 1e-14);  // rows of up to 9 weights in two steps
+    CHECK(ones == std::vector<double>(5 * points.size() / 3, 1.0));                                  // constants are the centre, which is kept apart
+    CHECK(status_of([&] { refiner.apply(std::vector<double>(7), 3); }) == LCL_ERROR_INVALID_ARGUMENT);
+    CHECK(status_of([] { Refiner(Context(), cube(), -1); }) == LCL_ERROR_INVALID_ARGUMENT);
+}
+
 TEST_CASE("a mesh goes through a file and through memory", "[cpp][io]") {
     const std::string path = "cpp_api_test.off";
     write_mesh(octahedron(), path);

@@ -7,6 +7,7 @@
 #include "host/apply/noise.h"
 #include "host/apply/row_transfer.h"
 #include "host/apply/transfer.h"
+#include "host/refine/device_refiner.h"
 #include "host/selftest/surface_check.h"
 #include "host/solve/limit_system.h"
 #include "host/two_phase/umbrella_steps.h"
@@ -75,17 +76,23 @@ std::vector<double> values_for(Index rows, int channels, int seed) {
     return values;
 }
 
+std::string what_of(const Case& c, int channels, Real real) {
+    const char* const type = real == Real::single ? "single" : real == Real::full ? "double" : "mixed";
+    return c.name + ", " + std::to_string(channels) + (channels == 1 ? " channel, " : " channels, ") + type;
+}
+
+/// A row sums at most 60 products of numbers of size 1 and weights that sum to 1; pairs of floats hold 2^-48.
+double rounding_of(const Context& context, Real real) {
+    const bool pairs = real == Real::wide && !context.device().has_double;
+    return 64 * (real == Real::single ? std::ldexp(1, -24) : pairs ? std::ldexp(1, -46) : std::ldexp(1, -52));
+}
+
 class Selftest {
 public:
     Selftest(std::shared_ptr<Context> context, const Case& c, int channels, Real real, std::function<void(const SelftestResult&)> report)
         : system_(make(std::move(context), c)), A_(*system_->A), plan_(A_.plan()), channels_(channels), real_(real), report_(std::move(report)) {
-        what_ = c.name + ", " + std::to_string(channels) + (channels == 1 ? " channel, " : " channels, ") +
-                (real == Real::single ? "single"
-                 : real == Real::full ? "double"
-                                      : "mixed");
-        // A row sums at most 60 products of numbers of size 1 and weights that sum to 1; pairs of floats hold 2^-48.
-        const bool pairs = real == Real::wide && !A_.context().device().has_double;
-        tolerance_ = 64 * (real == Real::single ? std::ldexp(1, -24) : pairs ? std::ldexp(1, -46) : std::ldexp(1, -52));
+        what_ = what_of(c, channels, real);
+        tolerance_ = rounding_of(A_.context(), real);
     }
 
     bool run() {
@@ -418,6 +425,24 @@ bool check_two_phase(const std::shared_ptr<Context>& context, const std::functio
     return passed;
 }
 
+/// Two levels of refinement, whose first takes the scheme's polygons, its creases and alpha, and whose second quads or triangles.
+bool check_refinement(const std::shared_ptr<Context>& context, const Case& c, int channels, Real real,
+                      const std::function<void(const SelftestResult&)>& report) {
+    constexpr int levels = 2;
+    Topology topology = build_topology(c.mesh);
+    Features features = find_features(c.mesh, topology, c.features);
+    const auto refiner = std::make_shared<const Refiner>(std::move(topology), std::move(features), c.scheme, levels);
+    DeviceRefiner device(context, refiner);
+    const std::vector<double> values = values_for(c.mesh.vertex_count, channels, 1);
+    std::vector<double> found(static_cast<std::size_t>(refiner->vertex_count()) * channels), expected(found.size());
+    refiner->apply(values.data(), channels, channels, expected.data(), channels);
+    device.apply(values.data(), channels, channels, real, found.data(), channels);
+    // Values of which the device scales up to a diagonal of 3.5 to 1.
+    const SelftestResult result{"lcl_refine", what_of(c, channels, real), largest_difference(found, expected), 3.5 * levels * rounding_of(*context, real)};
+    report(result);
+    return result.passed();
+}
+
 }  // namespace
 
 bool run_selftest(const std::shared_ptr<Context>& context, const std::function<void(const SelftestResult&)>& report) {
@@ -426,7 +451,10 @@ bool run_selftest(const std::shared_ptr<Context>& context, const std::function<v
         for (const Real real : {Real::single, Real::wide, Real::full}) {
             if (real == Real::full && !context->device().has_double) continue;
             if (real != Real::wide) passed = check_surface(context, c.name, c.mesh, c.features, c.scheme, real, report) && passed;
-            for (const int channels : {1, 2, 3, 9}) passed = Selftest(context, c, channels, real, report).run() && passed;
+            for (const int channels : {1, 2, 3, 9}) {
+                passed = Selftest(context, c, channels, real, report).run() && passed;
+                passed = check_refinement(context, c, channels, real, report) && passed;
+            }
         }
     passed = check_noise(context, Real::single, report) && passed;
     if (context->device().has_double) {

@@ -100,6 +100,7 @@ typedef struct lcl_mesh_s* lcl_mesh;                   /**< polygons, points, sh
 typedef struct lcl_operator_s* lcl_operator;           /**< the limit operator A of one mesh and scheme on one context */
 typedef struct lcl_field_s* lcl_field;                 /**< n x c values that stay on a device */
 typedef struct lcl_task_s* lcl_task;                   /**< a call that runs beside the caller */
+typedef struct lcl_refiner_s* lcl_refiner;             /**< a refinement of one mesh, made once and applied often */
 typedef struct lcl_limit_surface_s* lcl_limit_surface; /**< the limit surface of a mesh as patches, with its control points on a context's device */
 typedef struct lcl_samples_s* lcl_samples;             /**< places on a limit surface, found once and evaluated often */
 
@@ -497,13 +498,31 @@ typedef struct lcl_refine_options {
 #define LCL_REFINE_OPTIONS_INIT \
     { (uint32_t)sizeof(lcl_refine_options), 0 }
 
-/** Refines uniformly, in double on the host. alpha_auto, subset and owned are not looked at. alpha and lambda rule the first refinement alone (lambda: the
+/** Refines uniformly, in double on all cores of the host. alpha_auto, subset and owned are not looked at. alpha and lambda rule the first refinement alone (lambda: the
  * two-phase first step, which gives the mesh M^1); the result is read with alpha 0 and lambda 0, and carries refined creases and corners. Colours and scalar
  * properties are refined as channels; texture coordinates are dropped with a note. */
 LCL_API lcl_status lcl_mesh_refine(lcl_mesh mesh, const lcl_scheme_options* scheme, const lcl_refine_options* options, lcl_mesh* refined);
 /** Where each vertex of a refined mesh lies on the original's surface, in the parameters of `limitcl evaluate`: faces (-1: isolated) and corners: vertex_count;
  * uv: vertex_count x 2. */
 LCL_API lcl_status lcl_mesh_get_locations(lcl_mesh refined, int32_t* faces, int32_t* corners, double* uv);
+
+/** The topology of a refinement, made once for values that change: points of every frame, colours, other channels. context: the device that
+ * lcl_refiner_apply uses; NULL: the host, in double. Options, time and errors as lcl_mesh_refine; the refiner keeps what it needs of the mesh's faces and
+ * features as they are now, and the mesh. About 60 bytes a vertex of the mesh before the last level, and four bytes a corner of the refined one. */
+LCL_API lcl_status lcl_refiner_create(lcl_context context, lcl_mesh mesh, const lcl_scheme_options* scheme, const lcl_refine_options* options,
+                                      lcl_refiner* refiner);
+LCL_API void lcl_refiner_retain(lcl_refiner refiner);
+LCL_API void lcl_refiner_release(lcl_refiner refiner);
+/** Number of refined vertices. */
+LCL_API int32_t lcl_refiner_vertex_count(lcl_refiner refiner);
+/** What lcl_mesh_refine gives, with the points and properties that the mesh has now (in double on the host). */
+LCL_API lcl_status lcl_refiner_get_mesh(lcl_refiner refiner, lcl_mesh* refined);
+/** Refined values in the order of refined vertices. values: n x channels, n the vertices of the mesh, rows `stride` values apart (0: channels); out: the
+ * refined vertices x channels, `out_stride` values apart (0: channels), which may not overlap with values. precision: of the sums, as for lcl_limit_points; on
+ * the device values are centred and scaled, SINGLE loses about 1e-7 of their size a level. LCL_ERROR_BAD_INPUT for values that are not finite,
+ * LCL_ERROR_MEMORY where the device has no room. What lies between the levels stays on the device for the next call. */
+LCL_API lcl_status lcl_refiner_apply(lcl_refiner refiner, const double* values, size_t stride, int32_t channels, lcl_precision precision, double* out,
+                                     size_t out_stride);
 
 /* ---------------------------------------------------------------- the two-phase scheme: tangent planes, shape handles, fairness */
 
