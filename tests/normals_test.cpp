@@ -274,3 +274,149 @@ TEST_CASE("normals of flat meshes look upwards at every kind of vertex, chosen o
             }
         }
 }
+
+namespace {
+
+struct DeviceCase {
+    std::string name;
+    shapes::Shape shape;
+    SchemeOptions scheme;
+    PlanOptions plan;
+};
+
+/// Rings of many valences, and stored rows of every kind; odd sizes.
+std::vector<DeviceCase> device_cases() {
+    std::vector<DeviceCase> cases{{"quads", shapes::torus_quads(17, 13), catmull_clark(), {}},
+                                  {"creases and darts", shapes::with_isolated_vertex(shapes::grid_with_creases(), 3), catmull_clark(0.3), {}},
+                                  {"polygons", shapes::polygons_mixed(151, 3), doo_sabin(DooSabinMask::classic), {}},
+                                  {"quads of valence 3 to 6", shapes::icosphere_quads(2), doo_sabin(), {}},
+                                  {"triangles", shapes::random_triangle_mesh(233, 2, 20), loop(), {}},
+                                  {"quads at a pole", shapes::disk_pole_quads(60), catmull_clark(0.5), {}},
+                                  {"a pole of 5", shapes::disk_pole_quads(5), catmull_clark(), {}},
+                                  {"a pole of 7", shapes::disk_pole_triangles(7), loop(), {}},
+                                  {"triangles with a dart", shapes::torus_triangles_with_dart(), loop(), {}},
+                                  {"one ratio a vertex", shapes::icosphere_quads(1), catmull_clark(), {}},
+                                  {"a subset", shapes::torus_quads(5, 4), catmull_clark(), {}},
+                                  {"ghosts", shapes::torus_triangles(9, 5), loop(), {}}};
+    for (Index v = 0; v < cases[9].shape.mesh.vertex_count; ++v) cases[9].scheme.lambda_per_vertex.push_back(v % 6 * 0.2);
+    for (Index v = 0; v < cases[10].shape.mesh.vertex_count; ++v) cases[10].plan.subset.push_back(v % 3 == 0);
+    for (Index v = 0; v < cases[11].shape.mesh.vertex_count; ++v) cases[11].plan.owned.push_back(v % 4 != 1);
+    return cases;
+}
+
+using Values = std::vector<double>;
+
+double largest_difference(const Values& a, const Values& b) {
+    REQUIRE(a.size() == b.size());
+    double worst = 0;
+    for (std::size_t i = 0; i < a.size(); ++i)
+        if (!(std::abs(a[i] - b[i]) <= worst)) worst = std::abs(a[i] - b[i]);
+    return worst;
+}
+
+/// Kernels of one case, type and launch shape against host_normals and host_apply.
+class DeviceCheck {
+public:
+    DeviceCheck(const std::shared_ptr<Context>& context, const DeviceCase& c, const LaunchShape& launching, Real real) : mesh_(c.shape), real_(real) {
+        PlanOptions options = c.plan;
+        options.block_rows = launching.block_rows;
+        plan_ = std::make_shared<const Plan>(mesh_.plan(c.scheme, options));
+        A_ = std::make_unique<DeviceOperator>(context, plan_, launching);
+        tangents_ = std::make_unique<DeviceTangents>(*A_, build_tangent_plan(*plan_, mesh_.topology, mesh_.features, c.scheme));
+        const bool wide = real == Real::full || (real == Real::wide && context->device().has_double);
+        // A tangent of k neighbours sums products that are at most ten times its length, with k + 8 roundings, in the cross product and the length too.
+        std::size_t longest = 8;
+        for (const Run& run : plan_->runs) longest = std::max<std::size_t>(longest, run.stride());
+        tolerance_ = 20 * (static_cast<double>(longest) + 8) * std::ldexp(1, wide ? -53 : -24);
+        for (Index row = 0; row < plan_->vertex_count; ++row)
+            for (int c3 = 0; c3 < 3; ++c3) {
+                const double value = c.shape.mesh.positions[3 * plan_->vertex_of_row[row] + c3] / 4;
+                x_.push_back(real == Real::single ? static_cast<float>(value) : value);
+            }
+    }
+
+    void check_all() {
+        const Normals expected = host_normals(*plan_, tangents_->plan(), x_);
+        Field x = field(x_), y = field(x_), normals = field(Values(x_.size(), 0.0)), tangents = field(Values(x_.size(), 0.0)),
+              bitangents = field(Values(x_.size(), 0.0));
+        tangents_->normals(x, &y, normals);
+        CHECK(largest_difference(download(normals), expected.vertices) <= tolerance_);
+        CHECK(largest_difference(tangents_->read_sides(), expected.sides) <= tolerance_);
+        CHECK(largest_difference(download(y), host_apply(*plan_, x_, 3)) <= tolerance_);
+        normals = field(Values(x_.size(), 0.0));
+        tangents_->normals(x, nullptr, normals);
+        CHECK(largest_difference(download(normals), expected.vertices) <= tolerance_);
+        normals = field(Values(x_.size(), 0.0));
+        tangents_->frames(x, normals, tangents, bitangents);
+        CHECK(largest_difference(download(normals), expected.vertices) <= tolerance_);
+        CHECK(largest_difference(tangents_->read_sides(), expected.sides) <= tolerance_);
+        check_frames(download(normals), download(tangents), download(bitangents));
+        A_->context().finish();
+    }
+
+private:
+    Field field(const Values& values) {
+        Field field = A_->make_field(3, real_);
+        field.upload(values.data(), 0, plan_->vertex_count);
+        return field;
+    }
+    Values download(const Field& field) const {
+        Values values(x_.size());
+        field.download(values.data(), 0, plan_->vertex_count);
+        return values;
+    }
+
+    void check_frames(const Values& normals, const Values& tangents, const Values& bitangents) const {
+        double worst = 0;
+        for (std::size_t i = 0; i < normals.size(); i += 3) {
+            const Vector n(&normals[i]), t(&tangents[i]), b(&bitangents[i]);
+            if (n.isZero()) continue;
+            worst = std::max({worst, std::abs(t.norm() - 1), std::abs(t.dot(n)), (n.cross(t) - b).norm()});
+        }
+        CHECK(worst <= tolerance_);
+    }
+
+    Prepared mesh_;
+    Real real_;
+    std::shared_ptr<const Plan> plan_;
+    std::unique_ptr<DeviceOperator> A_;
+    std::unique_ptr<DeviceTangents> tangents_;
+    double tolerance_ = 0;
+    Values x_;
+};
+
+void check_device(const std::shared_ptr<Context>& context, const DeviceCase& c, const LaunchShape& launching, Real real) {
+    INFO(c.name << ", type " << static_cast<int>(real) << ", group " << launching.group << (context->device().has_double ? "" : ", no double"));
+    DeviceCheck(context, c, launching, real).check_all();
+}
+
+}  // namespace
+
+TEST_CASE("normals of the kernels equal those of plain loops", "[normals][kernel]") {
+    for (const DeviceCase& c : device_cases()) {
+        for (const Real real : {Real::single, Real::wide, Real::full}) {
+            if (real == Real::full && !device_context()->device().has_double) continue;
+            check_device(device_context(), c, {1, 7, 0, 1}, real);
+            check_device(device_context(), c, {16, 33, 0, 1}, real);
+        }
+        check_device(context_without_double(), c, {1, 64, 0, 1}, Real::wide);
+    }
+}
+
+TEST_CASE("the kernels of normals run once on small meshes", "[normals][kernel][tiny]") {
+    const std::vector<DeviceCase> cases = device_cases();
+    check_device(device_context(), cases[1], {16, 30, 0, 1}, Real::single);
+    check_device(device_context(), cases[6], {1, 64, 0, 1}, Real::wide);
+}
+
+TEST_CASE("a mesh that is not the operator's is refused", "[normals]") {
+    const Prepared mesh(shapes::torus_quads(5, 4)), other(shapes::torus_quads(4, 5)), more(shapes::torus_quads(5, 5));
+    shapes::Shape creased = mesh.shape;
+    creased.features.creases = {{0, 1}, {1, 2}};
+    const Prepared with_crease(creased);
+    const Plan plan = mesh.plan(catmull_clark());
+    using Catch::Matchers::Contains;
+    CHECK_THROWS_WITH(build_tangent_plan(plan, other.topology, other.features, catmull_clark()), Contains("is not the one that the operator was made of"));
+    CHECK_THROWS_WITH(build_tangent_plan(plan, with_crease.topology, with_crease.features, catmull_clark()), Contains("vertex 0"));
+    CHECK_THROWS_WITH(build_tangent_plan(plan, more.topology, more.features, catmull_clark()), Contains("20 vertices, the mesh 25"));
+}

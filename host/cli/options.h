@@ -53,6 +53,9 @@ struct Options {
     std::string subset_file;
     int sweeps = 0;  ///< 0: until the tolerance is met
 
+    // limit
+    bool normals = false;
+
     // refine
     int levels = 1;
     bool limit = false;

@@ -33,9 +33,9 @@ struct Surface {
 /// vertices, two points an edge, face corners; Doo-Sabin face corners, two points a sharp half-edge, kept corners, isolated vertices.
 struct Step {
     Surface surface;
-    Eigen::MatrixXd weights;                        ///< new vertices x old vertices
-    std::vector<std::vector<int>> vertex_faces;     ///< Doo-Sabin: the new face (type V) of every sector of an old vertex
-    std::map<std::pair<int, int>, int> edge_faces;  ///< Doo-Sabin: the new face (type E) of a sharp half-edge (from, to)
+    Eigen::MatrixXd weights;                         ///< new vertices x old vertices
+    std::vector<std::vector<int>> vertex_faces;      ///< Doo-Sabin: the new face (type V) of every sector of an old vertex
+    std::map<std::pair<int, int>, int> edge_faces;   ///< Doo-Sabin: the new face (type E) of a sharp half-edge (from, to)
 };
 
 /// Spells out boundary, creases, crease angle, corners. std::invalid_argument if a crease is no edge.
