@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // speed_opensubdiv PART: limit points of all vertices by OpenSubdiv, in float, beside limitcl's apply ("apply": its stencil tables on the shape one level
-// coarser, which bench/run scales), and what it sets up for them beside limitcl's set-up ("refiner": TopologyRefiner; "stencils": limit stencil table);
-// "refine": the shape from one four levels coarser, by TopologyRefiner and PrimvarRefiner.
+// coarser, which bench/run scales; "normals": with normals, the peer's with the two tangents of which they are made), and what it sets up for them beside
+// limitcl's set-up ("refiner": TopologyRefiner; "stencils": limit stencil table); "refine": the shape from one four levels coarser, by TopologyRefiner and
+// PrimvarRefiner.
 #include <opensubdiv/far/primvarRefiner.h>
 #include <opensubdiv/far/stencilTableFactory.h>
 #include <opensubdiv/far/topologyDescriptor.h>
@@ -132,6 +133,57 @@ void race_apply(const Arguments& arguments) {
     print_value("apply.cpu-stencils.error", error_of(coarse, stencils.limit));
 }
 
+/// Largest angle between our normals and the cross products of the peer's tangents, radians.
+double largest_angle(const std::vector<double>& normals, const std::vector<float>& first, const std::vector<float>& second) {
+    double worst = 0;
+    for (std::size_t i = 0; i < normals.size(); i += 3) {
+        const double* n = &normals[i];
+        const float *a = &first[i], *b = &second[i];
+        const double c[] = {double(a[1]) * b[2] - double(a[2]) * b[1], double(a[2]) * b[0] - double(a[0]) * b[2], double(a[0]) * b[1] - double(a[1]) * b[0]};
+        const double sine = std::hypot(c[1] * n[2] - c[2] * n[1], c[2] * n[0] - c[0] * n[2], c[0] * n[1] - c[1] * n[0]);
+        const double angle = std::atan2(sine, c[0] * n[0] + c[1] * n[1] + c[2] * n[2]);
+        if (!(angle <= worst)) worst = angle;
+    }
+    return worst;
+}
+
+void race_normals(const Arguments& arguments) {
+    const Shape shape = quad_sphere(arguments.level);
+    const Refiner refiner = make_refiner(shape);
+    const std::vector<float> points(shape.points.begin(), shape.points.end());
+    std::vector<float> limit(points.size()), first(points.size()), second(points.size());
+    Interpolation problem(open_device(arguments.device), shape, Scheme::catmull_clark);
+    const FieldHandle normals = make_field(problem.A);
+    lcl_tangents handle = nullptr;
+    const MeshHandle mesh = make_mesh(shape);
+    check(lcl_tangents_create(problem.A.get(), mesh.get(), &handle));
+    const limitcl::TangentsHandle tangents(handle);
+    run_rounds(arguments.runs, [&](Laps& laps) {
+        rest();
+        laps.time("normals.create", [&] {
+            check(lcl_tangents_create(problem.A.get(), mesh.get(), &handle));
+            lcl_tangents_release(handle);
+        });
+        laps.time_warm("normals.apply", [&] {
+            check(lcl_operator_apply(problem.A.get(), problem.M.get(), problem.P.get()));
+            problem.finish();
+        });
+        laps.time_warm("normals.limitcl", [&] {
+            check(lcl_tangents_apply(tangents.get(), problem.M.get(), problem.P.get(), normals.get(), nullptr, nullptr));
+            problem.finish();
+        });
+        laps.time_warm("normals.primvar-refiner", [&] {
+            Point* to[] = {reinterpret_cast<Point*>(limit.data()), reinterpret_cast<Point*>(first.data()), reinterpret_cast<Point*>(second.data())};
+            Far::PrimvarRefiner(*refiner).Limit(reinterpret_cast<const Point*>(points.data()), to[0], to[1], to[2]);
+        });
+    });
+    const std::vector<double> ours = problem.control_points();
+    std::vector<double> found(ours.size());
+    check(lcl_field_download(normals.get(), found.data(), LCL_TYPE_DOUBLE, 0));
+    print_value("normals.limitcl.error", error_of(shape, {ours.begin(), ours.end()}));
+    print_value("normals.angle", largest_angle(found, first, second));
+}
+
 void limitcl_setup(const ContextHandle& context, const Shape& shape) {
     const OperatorHandle A = make_operator(context, make_mesh(shape), Scheme::catmull_clark);
     const FieldHandle M = make_field(A);
@@ -237,6 +289,7 @@ void time_stencils(const Arguments& arguments) {
 
 void run_part(const Arguments& arguments) {
     if (arguments.part == "apply") race_apply(arguments);
+    else if (arguments.part == "normals") race_normals(arguments);
     else if (arguments.part == "refiner") race_refiner(arguments);
     else if (arguments.part == "stencils") time_stencils(arguments);
     else if (arguments.part == "refine") race_refine(arguments);

@@ -9,6 +9,7 @@
 #include <mutex>
 #include <optional>
 
+#include "host/apply/device_tangents.h"
 #include "host/capi/guard.h"
 #include "host/field/field.h"
 #include "host/io/mesh_file.h"
@@ -119,6 +120,14 @@ struct lcl_field_s : lcl::Counted {
     std::optional<lcl::Transform> transform;  // set by the first upload
 
     lcl_field_s(lcl_operator_s* owner, lcl::Field values) : A(lcl::share(owner)), field(std::move(values)) {}
+};
+
+struct lcl_tangents_s : lcl::Counted {
+    lcl::Reference<lcl_operator_s> A;
+    lcl::DeviceTangents tangents;
+    bool is_applied = false;
+
+    lcl_tangents_s(lcl_operator_s* owner, lcl::TangentPlan&& plan) : A(lcl::share(owner)), tangents(*owner->system->A, std::move(plan)) {}
 };
 
 struct lcl_task_s : lcl::Counted {

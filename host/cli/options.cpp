@@ -285,7 +285,7 @@ void Parser::add_interpolate() {
 
 void Parser::add_limit() {
     CLI::App* command = add_command("limit", "Every vertex moved to its limit point", true, true);
-    add_later(*command, "--normals", false);
+    command->add_flag("--normals", options_.normals, "Unit limit normals too (OBJ, PLY, OFF): at creases the mean of the sides, 0 0 0 at isolated vertices");
 }
 
 void Parser::add_refine() {

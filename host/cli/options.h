@@ -59,6 +59,9 @@ struct Options {
     bool refined = false;
     double fair = 0.0;  ///< 0: none
 
+    // limit
+    bool normals = false;
+
     // refine
     int levels = 1;
     bool limit = false;

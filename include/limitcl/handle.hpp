@@ -38,6 +38,7 @@ using MeshHandle = Handle<lcl_mesh, lcl_mesh_retain, lcl_mesh_release>;
 using OperatorHandle = Handle<lcl_operator, lcl_operator_retain, lcl_operator_release>;
 using FieldHandle = Handle<lcl_field, lcl_field_retain, lcl_field_release>;
 using RefinerHandle = Handle<lcl_refiner, lcl_refiner_retain, lcl_refiner_release>;
+using TangentsHandle = Handle<lcl_tangents, lcl_tangents_retain, lcl_tangents_release>;
 
 }  // namespace limitcl
 

@@ -103,6 +103,7 @@ typedef struct lcl_task_s* lcl_task;                   /**< a call that runs bes
 typedef struct lcl_refiner_s* lcl_refiner;             /**< a refinement of one mesh, made once and applied often */
 typedef struct lcl_limit_surface_s* lcl_limit_surface; /**< the limit surface of a mesh as patches, with its control points on a context's device */
 typedef struct lcl_samples_s* lcl_samples;             /**< places on a limit surface, found once and evaluated often */
+typedef struct lcl_tangents_s* lcl_tangents;           /**< limit tangents at the vertices of an operator's mesh, for normals */
 
 /* ---------------------------------------------------------------- devices and contexts */
 
@@ -360,6 +361,43 @@ typedef LCL_ENUM(lcl_precision){LCL_PRECISION_MIXED = 0 /**< float sweeps, resid
  * precision. */
 LCL_API lcl_status lcl_limit_points(lcl_operator A, const double* points, size_t stride, int32_t channels, lcl_precision precision, double* out,
                                     size_t out_stride);
+
+/* ---------------------------------------------------------------- limit normals and tangents at vertices */
+
+/* The normal of the limit surface at the limit of each vertex, t1 x t2 / |t1 x t2|, outwards where the faces are oriented so. A vertex has one normal a sector,
+ * the faces between two sharp edges or all of them; a vertex with several (inner creases, corners) gets their normalised mean, and each of them is a side.
+ * Isolated vertices have 0 0 0, as places where the tangents are parallel and creases whose sides cancel. Exact limits (left eigenvectors of the subdivision):
+ * - smooth vertices of at least three faces, darts of Catmull-Clark and Loop: both tangents round the vertex;
+ * - boundary and crease curves: along and across, Catmull-Clark up to 4 faces a sector, Loop up to 6, Doo-Sabin any; one face: the plane of the two edges;
+ * - corners: the plane of the two sharp edges for one face, Loop up to 2, Doo-Sabin any; where the edges form a straight line, what the surface leaves it by.
+ * Elsewhere the surface has no tangent plane, or one that shows only infinitely near, and the normal is a choice: curves of more faces and other corners take
+ * the tangents along and across that curves have; smooth vertices of two faces E_0 - E_1 and the difference of the faces, corners without two sharp edges
+ * and Doo-Sabin's darts the tangents of a smooth vertex.
+ * alpha and lambda change no normal (but alpha that of polygons' darts; lambda 1 leaves none, and the one for smaller lambda is given). Vertices outside a
+ * subset keep their points and still have the normal of the surface at their limit points. */
+
+/** Makes tangents of all vertices for normals: those of smooth rings use the operator's neighbours, others get stencils of their own, 28 to 52 bytes a
+ * neighbour. mesh: the one that A was made of, faces and sharp features unchanged (LCL_ERROR_INVALID_ARGUMENT where vertices differ); points do not matter.
+ * Linear time. LCL_ERROR_INVALID_ARGUMENT for operators of your own. */
+LCL_API lcl_status lcl_tangents_create(lcl_operator A, lcl_mesh mesh, lcl_tangents* tangents);
+LCL_API void lcl_tangents_retain(lcl_tangents tangents);
+LCL_API void lcl_tangents_release(lcl_tangents tangents);
+/** limit = A x and unit normals, on the device; returns at once. x: points, three channels. All fields are A's, of one precision, and differ; limit may be
+ * NULL. tangent and bitangent, both or neither NULL: the rest of an orthonormal frame, the first sector's direction along the curve (curves), to the first edge
+ * (else), turned into the plane of the normal, and normal x tangent; with them limit costs a pass of its own. About two passes. Normals and tangents are
+ * not centred or scaled; ghosts keep what their rows hold. */
+LCL_API lcl_status lcl_tangents_apply(lcl_tangents tangents, lcl_field x, lcl_field limit, lcl_field normals, lcl_field tangent, lcl_field bitangent);
+/** Number of sides: sectors of the vertices that have more than one. */
+LCL_API int32_t lcl_tangents_side_count(lcl_tangents tangents);
+/** Of each side the vertex, the first face in face order (the sector runs on from it to the next sharp edge), and the unit normal that the last
+ * lcl_tangents_apply found, for which this waits. Sides of a vertex follow each other. vertices, faces: side_count; normals: side_count x 3; each may be
+ * NULL. LCL_ERROR_INVALID_ARGUMENT for normals before the first apply. */
+LCL_API lcl_status lcl_tangents_get_sides(lcl_tangents tangents, int32_t* vertices, int32_t* faces, double* normals);
+/** The same in one call through host memory. points: vertex_count rows of three, `stride` values apart (0: 3), NULL: the mesh's. limit_points, normals:
+ * vertex_count rows of three, limit_stride and normal_stride values apart (0: 3); limit_points may be NULL or points. Normals are exact to some 1e-7 over the
+ * length of the edges relative to the diagonal in single precision, to 1e-7 in mixed where the device has no double precision, else to rounding. */
+LCL_API lcl_status lcl_limit_normals(lcl_operator A, lcl_mesh mesh, const double* points, size_t stride, lcl_precision precision, double* limit_points,
+                                     size_t limit_stride, double* normals, size_t normal_stride);
 
 /* ---------------------------------------------------------------- solving A P = M */
 
