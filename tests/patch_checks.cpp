@@ -87,7 +87,7 @@ void check_table(const PatchTable& table) {
     REQUIRE(fits);
     REQUIRE(std::count(uses.begin(), uses.end(), 0) == 0);
     REQUIRE(table.control.size() == static_cast<std::size_t>(table.patch_begin.back()));
-    const auto are_below = [](const std::vector<Index>& points, Index count) {
+    const auto are_below = [](const auto& points, Index count) {
         return std::all_of(points.begin(), points.end(), [&](Index point) { return point >= 0 && point < count; });
     };
     REQUIRE(are_below(table.control, table.control_count()));

@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "host/array.h"
 #include "host/evaluate/patch_kind.h"
 #include "host/mesh/features.h"
 #include "host/mesh/topology.h"
@@ -40,7 +41,7 @@ struct PatchTable {
     Index point_count = 0;           ///< points of the mesh
     std::vector<Stencils> steps;     ///< the explicit refinements, one after the other: points of the refined mesh
     Stencils ghosts;                 ///< rows over the points of the refined mesh: points across sharp edges, which follow them as control points
-    std::vector<Index> control;      ///< numbers of the control points of every patch, one patch after the other
+    Array<Index> control;            ///< numbers of the control points of every patch, one patch after the other
     std::vector<Index> patch_begin;  ///< patch_count + 1, in `control`
     std::vector<std::int32_t> kind;  ///< patch_count: -1 regular, else of `kinds`
     std::vector<PatchKind> kinds;    ///< each is used
