@@ -2,6 +2,7 @@
 #include "host/evaluate/patch_table.h"
 
 #include <algorithm>
+#include <limits>
 
 #include "host/parallel.h"
 
@@ -17,6 +18,11 @@ PatchTable build_patch_table(const Topology& topology, const Features& features,
         case Scheme::doo_sabin: add_doo_sabin_patches(topology, features, options, table); break;
     }
     return table;
+}
+
+void check_control_count(std::int64_t count) {
+    if (count > std::numeric_limits<Index>::max())
+        throw OutOfMemory("the patches of the limit surface have more than 2147483647 control points together: take a smaller mesh");
 }
 
 void locate(const PatchTable& table, const Places& places, std::size_t begin, std::size_t end, PatchPlace* out) {

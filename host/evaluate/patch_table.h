@@ -64,6 +64,9 @@ struct PatchTable {
 /// lambda of `options` must be 0. Linear time. BadInput as refine_once.
 PatchTable build_patch_table(const Topology& topology, const Features& features, const SchemeOptions& options);
 
+/// Refuses tables of more control points than can be numbered (OutOfMemory).
+void check_control_count(std::int64_t count);
+
 /// Finds places begin .. end - 1 of `places`; out: one each, from out[0] on. BadInput "place 17: ..." for the first that does not exist; not finite (u, v) do
 /// not exist.
 void locate(const PatchTable& table, const Places& places, std::size_t begin, std::size_t end, PatchPlace* out);
