@@ -121,9 +121,9 @@ TEST_CASE("a repair is the least change that meets the limit point and the tange
         one.masks = {umbrella_mask(kind.kind, kind.n)};
         const int size = static_cast<int>(one.masks[0].weights.size());
         one.vertex_count = size;
-        one.offsets = {0, size - 1};
+        one.offsets = {0, size};
         one.mask_of = {0};
-        for (int k = 1; k < size; ++k) one.members.push_back(k);
+        for (int k = 0; k < size; ++k) one.order.push_back(k);
         std::vector<double> points(3 * static_cast<std::size_t>(size));
         for (double& value : points) value = random.symmetric();
         const Eigen::Vector3d n = Eigen::Vector3d(random.symmetric(), random.symmetric(), random.symmetric()).normalized();
@@ -262,7 +262,7 @@ Constraints constraints_of(const Prepared& mesh, const std::vector<double>& norm
         for (int r = 0; r < (row_of(normals, u).norm() > 0 ? 5 : 3); ++r) {
             Eigen::VectorXd row = Eigen::VectorXd::Zero(3 * umbrellas.vertex_count);
             for (std::size_t k = 0; k < mask.weights.size(); ++k) {
-                const Index i = k == 0 ? u : umbrellas.members[umbrellas.offsets[u] + static_cast<Index>(k) - 1];
+                const Index i = umbrellas.order[umbrellas.offsets[u] + static_cast<Index>(k)];
                 if (r < 3) row[3 * i + r] = mask.weights[k][0];
                 else row.segment<3>(3 * i) = mask.weights[k][r - 2] * n;
             }
@@ -495,7 +495,7 @@ TEST_CASE("the kernels of the two-phase scheme run once on a small mesh", "[two-
     SchemeOptions scheme = catmull_clark(0, 0.3);
     const Refinement refined = refine(mesh.shape.mesh, mesh.shape.features, scheme, 1);
     const Topology topology = build_topology(refined.mesh);
-    const FairRows rows = build_fair_rows(topology, find_features(refined.mesh, topology, refined.features));
+    const FairRows rows = build_fair_rows(umbrellas, topology, find_features(refined.mesh, topology, refined.features));
     const auto count = static_cast<std::size_t>(umbrellas.count);
     UmbrellaTargets targets{mesh.shape.mesh.positions, std::vector<std::uint8_t>(count, 1), std::vector<double>(3 * count, 0.0), std::vector<double>(count, 1.2)};
     targets.constrained[2] = 0;
