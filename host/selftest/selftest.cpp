@@ -454,7 +454,7 @@ bool check_two_phase(const std::shared_ptr<Context>& context, const std::functio
     const UmbrellaTargets targets = rough_targets(umbrellas);
     const Refinement refined = refine(c.mesh, c.features, scheme, 1);
     const Topology fine = build_topology(refined.mesh);
-    const FairRows rows = build_fair_rows(fine, find_features(refined.mesh, fine, refined.features));
+    const FairRows rows = build_fair_rows(umbrellas, fine, find_features(refined.mesh, fine, refined.features));
     const auto found = two_phase_results(*make_device_steps(context, umbrellas, targets), refined.mesh, rows);
     const auto expected = two_phase_results(*make_host_steps(umbrellas, targets), refined.mesh, rows);
     bool passed = true;
