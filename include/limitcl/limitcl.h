@@ -719,9 +719,9 @@ LCL_API lcl_status lcl_texture(lcl_context context, lcl_mesh mesh, const lcl_sch
 /** Patches of the limit surface: regular ones are B-splines (Catmull-Clark bicubic, Doo-Sabin biquadratic) or box splines (Loop), those at extraordinary
  * vertices and faces are infinite sequences of such, evaluated by the eigenstructure of the local subdivision (Stam 1998); at sharp features by its powers.
  * Exact everywhere: no patch is replaced by another. alpha rules the first refinement, which is made explicitly. Time and memory linear in the mesh; the
- * eigenstructures of the valences that occur are computed once a process. precision: that of control points and evaluation; MIXED is SINGLE here. The mesh's
- * points are the first control points. Evaluation takes a few nanoseconds a point.
- * LCL_ERROR_INVALID_ARGUMENT for lambda (a two-phase surface is evaluated through its mesh M^1), alpha_auto, subset and owned. */
+ * eigenstructures of the valences that occur are computed once a process. precision: that of control points and evaluation; MIXED is double where the device
+ * has it. The mesh's points are the first control points. Evaluation takes a few nanoseconds a point. LCL_ERROR_INVALID_ARGUMENT for lambda (a two-phase
+ * surface is evaluated through its mesh M^1), alpha_auto, subset and owned. */
 LCL_API lcl_status lcl_limit_surface_create(lcl_context context, lcl_mesh mesh, const lcl_scheme_options* scheme, lcl_precision precision,
                                             lcl_limit_surface* surface);
 LCL_API void lcl_limit_surface_retain(lcl_limit_surface surface);
