@@ -6,7 +6,7 @@
 #include <limits>
 #include <string>
 
-#include "host/evaluate/dense_product.h"
+#include "host/device/dense_product.h"
 #include "host/parallel.h"
 
 namespace lcl {
@@ -188,7 +188,8 @@ void DeviceSurface::project() {
         if (has_dense_product(M, K, 4 * count)) {
             const Buffer gathered(context_, K * count * 4 * number_bytes, "control points of irregular patches");
             launch(*context_, kernel("lcl_gather"), lanes(count, K), kind.patch_count, points, kind.control_buffer, points_, gathered);
-            dense_product(*context_, real_, M, K, 4 * count, kind.projection, gathered, coefficients_, 4 * std::size_t{kind.numbers.first_coefficient});
+            dense_product(*context_, real_ == Real::full, M, K, 4 * count, kind.projection, gathered, coefficients_,
+                          4 * std::size_t{kind.numbers.first_coefficient});
             context_->finish();  // `gathered` is in use
         } else {
             launch(*context_, kernel("lcl_project"), lanes(count, M), kind.patch_count, points, kind.numbers, kind.projection, kind.control_buffer, points_,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "host/evaluate/dense_product.h"
+#include "host/device/dense_product.h"
 
 #include <string>
 
@@ -28,18 +28,19 @@ bool has_dense_product(std::size_t rows, std::size_t inner, std::size_t columns)
     return 2.0 * static_cast<double>(rows) * static_cast<double>(inner) * static_cast<double>(columns) >= least_operations;
 }
 
-void dense_product(Context& context, Real real, std::size_t rows, std::size_t inner, std::size_t columns, const Buffer& a, const Buffer& b, const Buffer& c,
-                   std::size_t c_offset) {
-    const auto product = real == Real::full ? multiply<double> : multiply<float>;
+void dense_product(Context& context, bool is_double, std::size_t rows, std::size_t inner, std::size_t columns, const Buffer& a, const Buffer& b,
+                   const Buffer& c, std::size_t c_offset) {
+    const auto product = is_double ? multiply<double> : multiply<float>;
     const clblast::StatusCode status = product(rows, inner, columns, a.get(), b.get(), c.get(), c_offset, context.queue());
     if (status != clblast::StatusCode::kSuccess)
-        throw DeviceError("CLBlast failed with status " + std::to_string(static_cast<int>(status)) + " while projecting control points");
+        throw DeviceError(static_cast<int>(status),
+                          "CLBlast failed with status " + std::to_string(static_cast<int>(status)) + " while projecting control points");
 }
 
 #else
 
 bool has_dense_product(std::size_t, std::size_t, std::size_t) { return false; }
-void dense_product(Context&, Real, std::size_t, std::size_t, std::size_t, const Buffer&, const Buffer&, const Buffer&, std::size_t) {
+void dense_product(Context&, bool, std::size_t, std::size_t, std::size_t, const Buffer&, const Buffer&, const Buffer&, std::size_t) {
     throw Unsupported("this build has no CLBlast");
 }
 
