@@ -276,12 +276,13 @@ inline void lcl_evaluate_tip(lcl_kind kind, uint column, const __global real *re
     jet->at[0] = (real4)(0);
 }
 
-/// Samples in irregular patches of one kind: begin .. begin + count - 1. places: the column of each sample's patch among those of the kind. weights: depths x M where weight_stride is M, else M.
+/// Samples in irregular patches of kind kinds[which]: begin .. begin + count - 1. places: the column of each sample's patch among those of the kind. weights: depths x M where weight_stride is M, else M.
 /// cells: (depths x) 3 x M x LCL_POINTS. coefficients: c_j of all patches of all kinds. The rest as above.
-__kernel void lcl_evaluate_irregular(const int begin, const int count, const int capacity, const lcl_kind kind, const __global real2 *restrict parameters,
+__kernel void lcl_evaluate_irregular(const int begin, const int count, const int capacity, const __global lcl_kind *restrict kinds, const int which, const __global real2 *restrict parameters,
                                      const __global uint *restrict places, const __global uint *restrict packed, const __global real4 *restrict turns,
                                      const __global real *restrict weights, const __global real *restrict cells, const __global real4 *restrict coefficients, __global real *restrict out) {
     if ((int)get_global_id(0) >= count) return;
+    const lcl_kind kind = kinds[which];
     const int i = begin + get_global_id(0);
     const real4 turn = turns[LCL_TURN(packed[i])];
     const uint column = places[i];
@@ -306,11 +307,12 @@ __kernel void lcl_evaluate_irregular(const int begin, const int count, const int
     lcl_write(&jet, capacity, LCL_ORDER(packed[i]), out);
 }
 
-/// c = projection times control points, for every patch of a kind. count: patches; K, M of the kind. projection: M x K. control: count x K numbers. points: read. coefficients: written.
-__kernel void lcl_project(const int count, const int point_count, const lcl_kind kind, const __global real *restrict projection, const __global int *restrict control,
+/// c = projection times control points, for every patch of a kind. count: patches; point_count: K. projection: M x K. control: count x K numbers. points: read. coefficients: written.
+__kernel void lcl_project(const int count, const int point_count, const __global lcl_kind *restrict kinds, const int which, const __global real *restrict projection, const __global int *restrict control,
                           const __global real4 *restrict points, __global real4 *restrict coefficients) {
     const int p = get_global_id(0), j = get_global_id(1);
     if (p >= count) return;
+    const lcl_kind kind = kinds[which];
     real4 sum = (real4)(0);
     for (int i = 0; i < point_count; ++i) sum += projection[j * point_count + i] * points[control[(size_t)p * point_count + i]];
     coefficients[kind.first_coefficient + (size_t)j * kind.stride + p] = sum;
@@ -324,10 +326,11 @@ __kernel void lcl_gather(const int count, const int point_count, const __global 
 }
 
 /// The cells of the first `depths` depths of every patch of a kind as regular patches: control points first_point + (3 (p depths + m) + k) LCL_POINTS + r of `points`, written.
-__kernel void lcl_expand_cells(const int count, const int depths, const uint first_point, const lcl_kind kind, const __global real *restrict weights, const __global real *restrict cells,
+__kernel void lcl_expand_cells(const int count, const int depths, const uint first_point, const __global lcl_kind *restrict kinds, const int which, const __global real *restrict weights, const __global real *restrict cells,
                                const __global real4 *restrict coefficients, __global real4 *restrict points) {
     const int cell = get_global_id(0);
     if (cell >= 3 * count * depths) return;
+    const lcl_kind kind = kinds[which];
     const int k = cell % 3, m = cell / 3 % depths, column = cell / 3 / depths;
     real4 p[LCL_POINTS];
     lcl_cell(kind, m, k, column, weights, cells, coefficients, p);

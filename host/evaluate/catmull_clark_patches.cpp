@@ -2,8 +2,10 @@
 // One patch for each face of the refined mesh, that is for each corner of the quad mesh that the last refinement starts from: patch h is the child at half-edge
 // h, from the vertex V = origin(h). The refined mesh needs no topology of its own: its points are the vertices, edges and faces of the quad mesh. Of a patch's
 // four vertices - V, the point of edge h, of the face, of the edge before h - only V can be irregular.
-#include <cmath>
+#include <charconv>
+#include <limits>
 #include <map>
+#include <string>
 #include <tuple>
 #include <unordered_map>
 
@@ -293,20 +295,28 @@ Quarter quarter_of(double u, double v) {
     return corner & 1 ? Quarter{corner, b, a} : Quarter{corner, a, b};
 }
 
+/// "6 corners (0 to 5)", "1 face (0)".
+std::string counted(Index count, const char* one, const char* many) {
+    return std::to_string(count) + " " + (count == 1 ? std::string(one) + " (0)" : many + (" (0 to " + std::to_string(count - 1)) + ")");
+}
+
+std::string shortest(double x) {
+    std::array<char, 32> text;
+    return {text.data(), std::to_chars(text.data(), text.data() + text.size(), x).ptr};
+}
+
 [[noreturn]] void refuse(const PatchTable& table, const Places& places, std::size_t i) {
     const Index faces = static_cast<Index>(table.face_begin.size()) - 1, face = places.faces[i], corner = places.corners ? places.corners[i] : 0;
-    const std::string place = "place " + std::to_string(i) + ": ";
-    if (face < 0 || face >= faces)
-        throw BadInput(place + "face " + std::to_string(face) + " does not exist, the mesh has " + std::to_string(faces) + " faces (0 to " +
-                       std::to_string(faces - 1) + ")");
+    const std::string place = "place " + std::to_string(i) + ": ", name = "face " + std::to_string(face);
+    if (face < 0 || face >= faces) throw BadInput(place + name + " does not exist, the mesh has " + counted(faces, "face", "faces"));
+    const Where where{{}, {face}};
     const Index degree = table.face_begin[face + 1] - table.face_begin[face];
-    const std::string of_face = "corner " + std::to_string(corner) + " of face " + std::to_string(face) + " does not exist";
-    if (degree == 4 && corner != 0) throw BadInput(place + of_face + ": on a quad the corner is 0 and (u, v) runs over the whole face", Where{{}, {face}});
-    if (corner < 0 || corner >= degree)
-        throw BadInput(place + of_face + ", it has " + std::to_string(degree) + " corners (0 to " + std::to_string(degree - 1) + ")", Where{{}, {face}});
+    const std::string of_face = "corner " + std::to_string(corner) + " of " + name + " does not exist";
+    if (degree == 4 && corner != 0) throw BadInput(place + of_face + ": on a quad the corner is 0 and (u, v) runs over the whole face", where);
+    if (corner < 0 || corner >= degree) throw BadInput(place + of_face + ", it has " + counted(degree, "corner", "corners"), where);
     throw BadInput(
-        place + "(u, v) = (" + std::to_string(places.uv[2 * i]) + ", " + std::to_string(places.uv[2 * i + 1]) + ") is not on the face: both run from 0 to 1",
-        Where{{}, {face}});
+        place + "(u, v) = (" + shortest(places.uv[2 * i]) + ", " + shortest(places.uv[2 * i + 1]) + ") does not lie on " + name + ": both run from 0 to 1",
+        where);
 }
 
 bool in_unit_square(double u, double v) { return static_cast<int>(u >= 0) & static_cast<int>(u <= 1) & static_cast<int>(v >= 0) & static_cast<int>(v <= 1); }

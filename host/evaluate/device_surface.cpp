@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <string>
+#include <utility>
 
 #include "host/device/dense_product.h"
 #include "host/parallel.h"
@@ -82,15 +83,14 @@ Buffer DeviceSurface::reals(const std::vector<double>& values, const char* what)
 }
 
 void DeviceSurface::upload_kinds() {
+    std::vector<lcl_kind> numbers;
     for (std::size_t q = 0; q < kinds_.size(); ++q) {
         Kind& kind = kinds_[q];
         kind.table = make_kind_table(table_.kinds[q]);
-        kind.numbers = {kind.table.mode_count,
-                        kind.table.depths,
-                        kind.table.cell_stride,
-                        kind.table.weight_stride,
-                        static_cast<cl_uint>(coefficient_count_),
-                        static_cast<cl_uint>(kind.patch_count)};
+        kind.which = static_cast<cl_int>(q);
+        kind.first_coefficient = coefficient_count_;
+        numbers.push_back({kind.table.mode_count, kind.table.depths, kind.table.cell_stride, kind.table.weight_stride, static_cast<cl_uint>(coefficient_count_),
+                           static_cast<cl_uint>(kind.patch_count)});
         coefficient_count_ += static_cast<std::size_t>(kind.table.mode_count) * static_cast<std::size_t>(kind.patch_count);
         if (coefficient_count_ > std::numeric_limits<cl_uint>::max())
             throw OutOfMemory("the surface has more coefficients than can be numbered: use a smaller mesh");
@@ -99,6 +99,7 @@ void DeviceSurface::upload_kinds() {
         kind.weights = reals(kind.table.weights, "weights of modes");
         kind.cells = reals(kind.table.cells, "cells of modes");
     }
+    kind_numbers_ = Buffer(context_, numbers.size() * sizeof(lcl_kind), "kinds of patches", numbers.data());
     const std::size_t row_bytes = 4 * (real_ == Real::full ? sizeof(double) : sizeof(float));
     coefficients_ = Buffer(context_, coefficient_count_ * row_bytes, "coefficients of irregular patches");
     control_ = Buffer(context_, table_.control.size() * sizeof(Index), "numbers of control points", table_.control.data());
@@ -152,7 +153,7 @@ void DeviceSurface::set_points(const double* points, std::size_t stride) {
 void DeviceSurface::upload_points() {
     const std::size_t count = control_points_.size() / 3;
     const bool as_double = real_ == Real::full;
-    Mapping mapping = context_->map(points_, 0, count * 4 * (as_double ? sizeof(double) : sizeof(float)), true, {}, "uploading control points");
+    Mapping mapping = context_->map(points_, 0, count * 4 * (as_double ? sizeof(double) : sizeof(float)), true, context_->marker(), "uploading control points");
     const auto put = [&](auto* rows) {
         using Number = std::remove_reference_t<decltype(*rows)>;
         parallel_for(count, [&](std::size_t begin, std::size_t end) {
@@ -188,12 +189,11 @@ void DeviceSurface::project() {
         if (has_dense_product(M, K, 4 * count)) {
             const Buffer gathered(context_, K * count * 4 * number_bytes, "control points of irregular patches");
             launch(*context_, kernel("lcl_gather"), lanes(count, K), kind.patch_count, points, kind.control_buffer, points_, gathered);
-            dense_product(*context_, real_ == Real::full, M, K, 4 * count, kind.projection, gathered, coefficients_,
-                          4 * std::size_t{kind.numbers.first_coefficient});
+            dense_product(*context_, real_ == Real::full, M, K, 4 * count, kind.projection, gathered, coefficients_, 4 * kind.first_coefficient);
             context_->finish();  // `gathered` is in use
         } else {
-            launch(*context_, kernel("lcl_project"), lanes(count, M), kind.patch_count, points, kind.numbers, kind.projection, kind.control_buffer, points_,
-                   coefficients_);
+            launch(*context_, kernel("lcl_project"), lanes(count, M), kind.patch_count, points, kind_numbers_, kind.which, kind.projection, kind.control_buffer,
+                   points_, coefficients_);
         }
     }
 }
@@ -237,8 +237,8 @@ void DeviceSurface::prepare_for(std::size_t sample_count) {
 void DeviceSurface::expand() {
     for (Kind& kind : kinds_)
         launch(*context_, kernel("lcl_expand_cells"), lanes(static_cast<std::size_t>(3 * expanded_depths_) * static_cast<std::size_t>(kind.patch_count)),
-               kind.patch_count, static_cast<cl_int>(expanded_depths_), static_cast<cl_uint>(kind.expanded_point), kind.numbers, kind.weights, kind.cells,
-               coefficients_, points_);
+               kind.patch_count, static_cast<cl_int>(expanded_depths_), static_cast<cl_uint>(kind.expanded_point), kind_numbers_, kind.which, kind.weights,
+               kind.cells, coefficients_, points_);
 }
 
 /// Sorts places that are found into groups, by counting, in the memory of the device's buffers.
@@ -305,7 +305,7 @@ void DeviceSurface::fill(const Places& places, SamplePiece& piece) {
         if (sum > begin) piece.groups.push_back({static_cast<std::int32_t>(group) - 1, static_cast<cl_int>(begin), static_cast<cl_int>(sum - begin)});
     }
     const char* const doing = "uploading samples";
-    Mapping parameters = context_->map(piece.parameters, 0, 2 * piece.count * sizeof(Number), true, {}, doing),
+    Mapping parameters = context_->map(piece.parameters, 0, 2 * piece.count * sizeof(Number), true, context_->marker(), doing),
             numbers = context_->map(piece.places, 0, piece.count * sizeof(cl_uint), true, {}, doing),
             packed = context_->map(piece.packed, 0, piece.count * sizeof(cl_uint), true, {}, doing);
     for_each_piece(piece.count, pieces, [&](std::size_t part, std::size_t begin, std::size_t end) {
@@ -351,8 +351,8 @@ void DeviceSurface::launch_groups(const SamplePiece& piece, unsigned want) {
                    turns_, control_, points_, out_);
         } else {
             const Kind& kind = kinds_[group.kind];
-            launch(*context_, kernel("lcl_evaluate_irregular", want), size, group.begin, group.count, capacity, kind.numbers, piece.parameters, piece.places,
-                   piece.packed, turns_, kind.weights, kind.cells, coefficients_, out_);
+            launch(*context_, kernel("lcl_evaluate_irregular", want), size, group.begin, group.count, capacity, kind_numbers_, kind.which, piece.parameters,
+                   piece.places, piece.packed, turns_, kind.weights, kind.cells, coefficients_, out_);
         }
     }
 }
@@ -369,7 +369,7 @@ void DeviceSurface::evaluate(const SamplePiece& piece, const SurfaceValues& valu
 
 template <class Number>
 void DeviceSurface::read(const SamplePiece& piece, unsigned want, const SurfaceValues& values) {
-    Mapping mapping = context_->map(out_, 0, piece.count * values_a_sample(want) * sizeof(Number), false, {}, "reading values at samples");
+    Mapping mapping = context_->map(out_, 0, piece.count * values_a_sample(want) * sizeof(Number), false, context_->marker(), "reading values at samples");
     const auto* from = static_cast<const Number*>(mapping.data());
     for (const ValueBlock& block : value_blocks) {
         if (!(want & block.want)) continue;

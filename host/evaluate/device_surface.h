@@ -56,8 +56,8 @@ public:
 private:
     struct Kind {
         KindTable table;
-        lcl_kind numbers{};
-        cl_int patch_count = 0;
+        cl_int which = 0, patch_count = 0;
+        std::size_t first_coefficient = 0;
         std::vector<Index> control;  // patch_count x K
         Buffer control_buffer, projection, weights, cells;
         std::size_t expanded_control = 0, expanded_point = 0;
@@ -88,7 +88,7 @@ private:
     std::vector<Kind> kinds_;
     std::size_t coefficient_count_ = 0;
     int expanded_depths_ = 0;  // 0: none
-    Buffer control_, points_, coefficients_, turns_, out_;
+    Buffer kind_numbers_, control_, points_, coefficients_, turns_, out_;
     std::vector<double> control_points_;  // normalised, control_count x 3
     std::array<double, 3> centre_{};
     double scale_ = 1;  // model units in one of the device's

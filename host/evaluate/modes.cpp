@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The step of a kind has the form [[S, 0], [S11, S12]], inner points first. S commutes with the turn that its orbits describe, so cosines and sines of one
-// frequency over the orbits span spaces that it keeps: its eigenvectors come from blocks of one row an orbit, their inverse by the orthogonality of the
-// harmonics. S12 is small. Quadratic time and memory in the number of points.
+// frequency over the orbits span spaces that it keeps: its eigenvectors come from blocks of one row an orbit, their inverse from the harmonics' orthogonality.
+// S12 is small and taken as it is.
 #include "host/evaluate/modes.h"
 
 #include <algorithm>

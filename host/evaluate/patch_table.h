@@ -46,10 +46,10 @@ struct PatchTable {
     std::vector<PatchKind> kinds;    ///< each is used
     std::vector<ParameterTurn> turns;
     // What locating needs.
-    int levels = 0;                         ///< explicit refinements
-    std::vector<Index> face_begin;          ///< face_count + 1: first corner of each face of the mesh
-    std::vector<Index> patch_of_domain;     ///< Doo-Sabin: patches of each domain; empty where they follow from the number of the face
-    std::vector<std::uint8_t> sharp_sides;  ///< Doo-Sabin, per corner: 1 where the edge to the next vertex is sharp, 2 where that to the previous one is
+    int levels = 0;                       ///< explicit refinements
+    std::vector<Index> face_begin;        ///< face_count + 1: first corner of each face of the mesh
+    std::vector<Index> patch_of_quarter;  ///< Doo-Sabin: patches of the quarters of every vertex of the once refined mesh: towards (1,1), (1,0), (0,0), (0,1)
+    std::vector<Index> squares_beyond;    ///< Doo-Sabin with sharp edges, three per corner: vertices of the once refined mesh whose squares have v < 0, u < 0, both
 
     Index patch_count() const { return static_cast<Index>(patch_begin.size()) - 1; }
     Index refined_count() const { return steps.empty() ? point_count : static_cast<Index>(steps.back().offsets.size() - 1); }

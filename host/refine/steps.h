@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// One refinement step per scheme: connectivity, rows and, for Doo-Sabin, where things went. Internal to host/refine.
+// One refinement step per scheme: connectivity, rows and, for Doo-Sabin, where things went. Internal to host/refine and host/evaluate.
 #pragma once
 
 #include <cstdint>
