@@ -26,8 +26,12 @@ SurfacePlace Charts::surface_place(const ChartPlace& place) const {
     return {face, corner, place.a, place.b};
 }
 
-double Charts::low_a(Index corner) const { return !table_.sharp_sides.empty() && (table_.sharp_sides[corner] & 2) ? -1 : 0; }
-double Charts::low_b(Index corner) const { return !table_.sharp_sides.empty() && (table_.sharp_sides[corner] & 1) ? -1 : 0; }
+/// Doo-Sabin: there is a square beyond the edge to the next vertex (0), the edge to the previous one (1), both (2).
+bool Charts::reaches_beyond(Index corner, int which) const {
+    return !table_.squares_beyond.empty() && table_.squares_beyond[3 * static_cast<std::size_t>(corner) + static_cast<std::size_t>(which)] >= 0;
+}
+double Charts::low_a(Index corner) const { return reaches_beyond(corner, 1) ? -1 : 0; }
+double Charts::low_b(Index corner) const { return reaches_beyond(corner, 0) ? -1 : 0; }
 
 /// Across one border; false where the place is inside, or at a wall.
 bool Charts::step_square(ChartPlace& place) const {
@@ -49,7 +53,8 @@ bool Charts::step_square(ChartPlace& place) const {
     } else if (b > 1) {
         place = {topology_.previous(h), 2 - b, a};
     } else {
-        return false;
+        if (a >= 0 || b >= 0 || reaches_beyond(h, 2)) return false;
+        (a > b ? place.a : place.b) = 0;  // round a corner of the domain
     }
     return true;
 }
