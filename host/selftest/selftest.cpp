@@ -7,6 +7,7 @@
 #include "host/apply/noise.h"
 #include "host/apply/row_transfer.h"
 #include "host/apply/transfer.h"
+#include "host/selftest/surface_check.h"
 #include "host/solve/limit_system.h"
 
 namespace lcl {
@@ -353,6 +354,7 @@ bool run_selftest(const std::shared_ptr<Context>& context, const std::function<v
     for (const Case& c : cases())
         for (const Real real : {Real::single, Real::wide, Real::full}) {
             if (real == Real::full && !context->device().has_double) continue;
+            if (real != Real::wide) passed = check_surface(context, c.name, c.mesh, c.features, c.scheme, real, report) && passed;
             for (const int channels : {1, 2, 3, 9}) passed = Selftest(context, c, channels, real, report).run() && passed;
         }
     passed = check_noise(context, Real::single, report) && passed;
