@@ -26,6 +26,8 @@ struct Release {
     void operator()(lcl_task handle) const { lcl_task_release(handle); }
     void operator()(lcl_refiner handle) const { lcl_refiner_release(handle); }
     void operator()(lcl_tangents handle) const { lcl_tangents_release(handle); }
+    void operator()(lcl_limit_surface handle) const { lcl_limit_surface_release(handle); }
+    void operator()(lcl_samples handle) const { lcl_samples_release(handle); }
 };
 template <class Raw>
 using Owned = std::unique_ptr<std::remove_pointer_t<Raw>, Release>;
@@ -36,6 +38,8 @@ using FieldHandle = Owned<lcl_field>;
 using Task = Owned<lcl_task>;
 using Refiner = Owned<lcl_refiner>;
 using Tangents = Owned<lcl_tangents>;
+using LimitSurface = Owned<lcl_limit_surface>;
+using Samples = Owned<lcl_samples>;
 
 inline bool contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
 

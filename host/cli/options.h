@@ -103,6 +103,13 @@ struct Options {
     std::uint32_t seed = 0;
     bool on_mesh = false;
 
+    // evaluate
+    std::string places_file;
+    int derivatives = 1;
+
+    // closest
+    std::string points_file;
+
     bool has(const char* option) const { return given.count(option) > 0; }
 };
 
