@@ -182,7 +182,7 @@ void add_doo_sabin_patches(const PolygonMesh& mesh, const Topology& topology, co
     table.levels = 2;
     table.steps.push_back(std::move(first.stencils));
     StencilRows second(once, second_layout.vertex_count);
-    doo_sabin_rows({first.mesh, once, once_features, options}, second_layout, second);
+    doo_sabin_rows({once, once_features, options}, second_layout, second);
     table.steps.push_back(second.take());
     table.face_begin.assign(topology.face_offsets.begin(), topology.face_offsets.end());
     table.turns.assign(std::begin(turns), std::end(turns));
