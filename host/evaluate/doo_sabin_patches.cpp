@@ -171,19 +171,13 @@ bool corner_exists(const PatchTable& table, const Places& places, std::size_t i)
 
 }  // namespace
 
-void add_doo_sabin_patches(const PolygonMesh& mesh, const Topology& topology, const Features& features, const SchemeOptions& options, PatchTable& table) {
+void add_doo_sabin_patches(const Topology& topology, const Features& features, const SchemeOptions& options, PatchTable& table) {
     const DooSabinLayout first_layout = lay_out_doo_sabin(topology, features);
     check_corners(first_layout);
-    Refinement first = refine_once(mesh, topology, features, options);
-    const Topology once = build_topology(first.mesh);
-    const Features once_features = find_features(first.mesh, once, first.features);
+    table.refiner = std::make_shared<Refiner>(topology, features, options, 2);
+    const Topology& once = table.refiner->steps().back().topology;
     check_control_count(8 * static_cast<std::int64_t>(once.half_edge_count()));  // no patch has fewer
-    const DooSabinLayout second_layout = lay_out_doo_sabin(once, once_features);
-    table.levels = 2;
-    table.steps.push_back(std::move(first.stencils));
-    StencilRows second(once, second_layout.vertex_count);
-    doo_sabin_rows({once, once_features, options}, second_layout, second);
-    table.steps.push_back(second.take());
+    const DooSabinLayout second_layout = lay_out_doo_sabin(once, table.refiner->steps().back().features);
     table.face_begin.assign(topology.face_offsets.begin(), topology.face_offsets.end());
     table.turns.assign(std::begin(turns), std::end(turns));
     PatchBuilder(once, second_layout, first_layout.kept_begin, options.mask, table).build();

@@ -100,13 +100,9 @@ PatchPlace place_in(Index face, double u, double v) {
 
 }  // namespace
 
-void add_loop_patches(const PolygonMesh&, const Topology& topology, const Features& features, const SchemeOptions& options, PatchTable& table) {
-    check_triangles(topology);
+void add_loop_patches(const Topology& topology, const Features& features, const SchemeOptions& options, PatchTable& table) {
     check_control_count(24 * static_cast<std::int64_t>(topology.face_count));  // no patch has fewer than 6
-    StencilRows rows(topology, static_cast<std::size_t>(topology.vertex_count) + topology.edge_count);
-    loop_rows({topology, features, options}, rows);
-    table.levels = 1;
-    table.steps.push_back(rows.take());
+    table.refiner = std::make_shared<Refiner>(topology, features, options, 1);
     table.face_begin.assign(topology.face_offsets.begin(), topology.face_offsets.end());
     table.turns.assign(std::begin(child_turns), std::end(child_turns));
     PatchBuilder(topology, features, table).build();
