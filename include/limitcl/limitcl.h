@@ -537,9 +537,9 @@ typedef struct lcl_refine_options {
 #define LCL_REFINE_OPTIONS_INIT \
     { (uint32_t)sizeof(lcl_refine_options), 0 }
 
-/** Refines uniformly, in double on all cores of the host. alpha_auto, subset and owned are not looked at. alpha and lambda rule the first refinement alone (lambda: the
- * two-phase first step, which gives the mesh M^1); the result is read with alpha 0 and lambda 0, and carries refined creases and corners. Colours and scalar
- * properties are refined as channels; texture coordinates are dropped with a note. */
+/** Refines uniformly, in double on all cores of the host. alpha_auto, subset and owned are not looked at. alpha and lambda rule the first refinement alone
+ * (lambda: the two-phase first step, which gives the mesh M^1); the result is read with alpha 0 and lambda 0, and carries refined creases and corners. Colours
+ * and scalar properties are refined as channels; texture coordinates are dropped with a note. */
 LCL_API lcl_status lcl_mesh_refine(lcl_mesh mesh, const lcl_scheme_options* scheme, const lcl_refine_options* options, lcl_mesh* refined);
 /** Where each vertex of a refined mesh lies on the original's surface, in the parameters of `limitcl evaluate`: faces (-1: isolated) and corners: vertex_count;
  * uv: vertex_count x 2. */
@@ -547,7 +547,8 @@ LCL_API lcl_status lcl_mesh_get_locations(lcl_mesh refined, int32_t* faces, int3
 
 /** The topology of a refinement, made once for values that change: points of every frame, colours, other channels. context: the device that
  * lcl_refiner_apply uses; NULL: the host, in double. Options, time and errors as lcl_mesh_refine; the refiner keeps what it needs of the mesh's faces and
- * features as they are now, and the mesh. About 60 bytes a vertex of the mesh before the last level, and four bytes a corner of the refined one. */
+ * features as they are now, and the mesh: about 110 bytes a vertex of the mesh before the last level (on the device 60), and four a corner of the refined one.
+ */
 LCL_API lcl_status lcl_refiner_create(lcl_context context, lcl_mesh mesh, const lcl_scheme_options* scheme, const lcl_refine_options* options,
                                       lcl_refiner* refiner);
 LCL_API void lcl_refiner_retain(lcl_refiner refiner);
