@@ -70,12 +70,7 @@ TEST_CASE("what comes with a later version is refused by name", "[cli][exit]") {
                                                                              {"surface --help", "'surface'"},
                                                                              {"--quiet closest in.obj", "'closest'"},
                                                                              {"surface in.xyz -o o.obj", "'surface'"},
-                                                                             {"limit in.obj -o o.obj --normals", "--normals"},
-                                                                             {"interpolate in.obj -o o.obj --normals mesh --lambda 0.3", "--normals"},
-                                                                             {"interpolate in.obj -o o.obj --handles 1,2 --lambda 0.3", "--handles"},
-                                                                             {"interpolate in.obj -o o.obj --refined --lambda 0.3", "--refined"},
-                                                                             {"interpolate in.obj -o o.obj --fair 1 --lambda 0.3", "--fair"},
-                                                                             {"interpolate in.obj -o o.obj --map m.csv --lambda 0.3", "--map"}}));
+                                                                             {"limit in.obj -o o.obj --normals", "--normals"}}));
     const Outcome outcome = run(folder, arguments);
     INFO(arguments << "\n" << outcome.err);
     CHECK(outcome.exit_code == 2);
