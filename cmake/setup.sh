@@ -25,7 +25,7 @@ need_for_build() {
     need_tool cc gcc
     need_tool cmake cmake
     command -v make >/dev/null || need_tool ninja ninja-build
-    need ocl-icd-opencl-dev opencl-headers libeigen3-dev libopenmesh-dev zlib1g-dev libcli11-dev nlohmann-json3-dev
+    need ocl-icd-opencl-dev opencl-headers libeigen3-dev libopenmesh-dev libclblast-dev libnanoflann-dev zlib1g-dev libcli11-dev nlohmann-json3-dev
 }
 
 # PoCL, an OpenCL device on every processor; at run time it calls the linker.

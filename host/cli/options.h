@@ -53,11 +53,14 @@ struct Options {
     lcl_solver solver = LCL_SOLVER_AUTO;
     std::string subset_file;
     int sweeps = 0;                              ///< 0: until the tolerance is met
-    std::string normals;                         ///< a CSV, "mesh", or empty: none
+    std::string wanted_normals;                  ///< a CSV, "mesh", or empty: none
     std::array<double, 2> handles = {1.0, 1.0};  ///< of convex and other vertices
     std::string handles_file;                    ///< not empty: one a vertex, rules over handles
     bool refined = false;
     double fair = 0.0;  ///< 0: none
+
+    // limit
+    bool normals = false;
 
     // refine
     int levels = 1;
@@ -99,6 +102,13 @@ struct Options {
     std::vector<double> colours;  ///< three numbers a colour; empty: the library's
     std::uint32_t seed = 0;
     bool on_mesh = false;
+
+    // evaluate
+    std::string places_file;
+    int derivatives = 1;
+
+    // closest
+    std::string points_file;
 
     bool has(const char* option) const { return given.count(option) > 0; }
 };

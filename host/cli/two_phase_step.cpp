@@ -75,7 +75,7 @@ std::vector<double> read_handles(const std::string& path, std::size_t vertex_cou
 void note_parameters(Job& job) {
     const Options& options = job.options;
     job.report.set_parameter("refined", true);
-    if (!options.normals.empty()) job.report.set_parameter("normals", options.normals);
+    if (!options.wanted_normals.empty()) job.report.set_parameter("normals", options.wanted_normals);
     if (!options.handles_file.empty()) job.report.set_parameter("handles", options.handles_file);
     else if (options.has("--handles")) job.report.set_parameter("handles", std::vector<double>{options.handles[0], options.handles[1]});
     if (options.fair > 0.0) job.report.set_parameter("fair", options.fair);
@@ -88,15 +88,15 @@ std::string first_of(const std::int32_t* vertices, std::int32_t count) {
 
 }  // namespace
 
-bool makes_refined_mesh(const Options& options) { return options.refined || !options.normals.empty() || options.has("--handles") || options.fair > 0.0; }
+bool makes_refined_mesh(const Options& options) { return options.refined || !options.wanted_normals.empty() || options.has("--handles") || options.fair > 0.0; }
 
 TwoPhaseChoice choose_two_phase(Job& job, lcl_mesh mesh, const SchemeChoice& scheme, const std::vector<std::string>& channels) {
     const Options& options = job.options;
     const std::vector<char> in_subset = subset_marks(mesh, scheme);
     TwoPhaseChoice choice;
-    choice.options.skip_normals = options.normals == "mesh";
+    choice.options.skip_normals = options.wanted_normals == "mesh";
     if (choice.options.skip_normals) choice.normals = normals_of_input(job, mesh, in_subset);
-    else if (!options.normals.empty()) choice.normals = read_normals(options.normals, in_subset);
+    else if (!options.wanted_normals.empty()) choice.normals = read_normals(options.wanted_normals, in_subset);
     if (!options.handles_file.empty()) choice.handles = read_handles(options.handles_file, in_subset.size());
     for (const std::string& name : channels) choice.channels.push_back(name.c_str());
     choice.options.normals = choice.normals.empty() ? nullptr : choice.normals.data();
@@ -112,9 +112,9 @@ TwoPhaseChoice choose_two_phase(Job& job, lcl_mesh mesh, const SchemeChoice& sch
 
 Failure two_phase_failure(const Job& job, lcl_status status) {
     Failure failure = failure_of(status);
-    const bool about_normals = status == LCL_ERROR_BAD_INPUT && !job.options.normals.empty() && job.options.normals != "mesh";
+    const bool about_normals = status == LCL_ERROR_BAD_INPUT && !job.options.wanted_normals.empty() && job.options.wanted_normals != "mesh";
     const bool about_ratios = status == LCL_ERROR_INVALID_ARGUMENT && !job.options.lambda_file.empty();
-    if (about_normals) failure.message = job.options.normals + ": " + failure.message;
+    if (about_normals) failure.message = job.options.wanted_normals + ": " + failure.message;
     if (!about_ratios) return failure;
     failure.message = job.options.lambda_file + " (0 where it lists no ratio): " + failure.message;
     failure.exit_code = exit_bad_input;

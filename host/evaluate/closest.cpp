@@ -1,0 +1,248 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "host/evaluate/closest.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <Eigen/Dense>
+#include <nanoflann.hpp>
+
+#include "host/parallel.h"
+
+namespace lcl {
+namespace {
+
+constexpr double wanted_seeds = 131072;
+constexpr int finest_grid = 16;           // of seeds in a chart, a side
+constexpr int most_steps = 60;            // near an extraordinary vertex Newton's method gains only a factor of about 3 a step
+constexpr double longest_step = 1;        // in a chart
+constexpr double step_tolerance = 1e-12;  // of the surface's size
+constexpr std::size_t evaluations_a_point = 4, smallest_piece = 1024;
+
+using Vector = Eigen::Map<const Eigen::Vector3d>;
+
+/// Places of charts as arrays of places, with what evaluating them gives.
+struct Batch {
+    std::vector<Index> faces, corners;
+    std::vector<double> uv, points, du, dv, duu, duv, dvv, normals;
+    std::vector<SurfacePlace> places;
+
+    void resize(std::size_t count) {
+        places.resize(count);
+        faces.resize(count);
+        corners.resize(count);
+        for (std::vector<double>* array : {&points, &du, &dv, &duu, &duv, &dvv, &normals}) array->resize(3 * count);
+        uv.resize(2 * count);
+    }
+    void set(std::size_t i, const SurfacePlace& place) {
+        places[i] = place;
+        faces[i] = place.face;
+        corners[i] = place.corner;
+        uv[2 * i] = place.u;
+        uv[2 * i + 1] = place.v;
+    }
+    void evaluate(DeviceSurface& surface, SamplePiece& piece, std::size_t count, const SurfaceValues& values) {
+        surface.make_samples({count, faces.data(), corners.data(), uv.data()}, 0, count, piece);
+        surface.evaluate(piece, values);
+    }
+};
+
+/// A search under way.
+struct Search {
+    ChartPlace best;                            ///< nearest so far
+    double square = -1;                         ///< of its distance; below 0: not known yet
+    double step_a = 0, step_b = 0, length = 0;  ///< from `best` to the trial, and how far that is in space
+
+    ChartPlace trial(const Charts& charts) const { return charts.move(best, step_a, step_b); }
+    void halve() { step_a /= 2, step_b /= 2, length /= 2; }
+};
+
+/// Solves H step = -gradient with what walls leave free. H: second derivatives of half the square of the distance where they are positive definite, else the
+/// first fundamental form.
+Eigen::Vector2d newton_step(const Eigen::Matrix2d& hessian, const Eigen::Matrix2d& metric, Eigen::Vector2d gradient, const std::array<bool, 3>& walls) {
+    const bool is_convex = hessian.allFinite() && hessian.determinant() > 1e-3 * metric.determinant() && hessian.trace() > 0;
+    const Eigen::Matrix2d& by = is_convex ? hessian : metric;
+    Eigen::Vector2d step = -by.inverse() * gradient;
+    if (!step.allFinite()) step = -gradient / std::max(metric.trace(), 1e-300);
+    for (int k = 0; k < 3; ++k) {
+        if (!walls[k]) continue;
+        const Eigen::Vector2d outward = k == 0 ? Eigen::Vector2d(-1, 0) : k == 1 ? Eigen::Vector2d(0, -1) : Eigen::Vector2d(1, 1);
+        if (step.dot(outward) <= 0) continue;
+        const Eigen::Vector2d along(-outward[1], outward[0]);
+        const double curvature = along.dot(by * along);
+        step = curvature > 0 ? Eigen::Vector2d(-along.dot(gradient) / curvature * along) : Eigen::Vector2d(0, 0);
+    }
+    return step;
+}
+
+}  // namespace
+
+struct ClosestSearch::Seeds {
+    std::vector<ChartPlace> places;
+    std::vector<double> points;
+
+    std::size_t kdtree_get_point_count() const { return places.size(); }
+    double kdtree_get_pt(std::size_t i, std::size_t axis) const { return points[3 * i + axis]; }
+    template <class Box>
+    bool kdtree_get_bbox(Box&) const {
+        return false;
+    }
+    using Tree = nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<double, Seeds>, Seeds, 3, Index>;
+    std::unique_ptr<Tree> tree;
+};
+
+ClosestSearch::~ClosestSearch() = default;
+
+ClosestSearch::ClosestSearch(DeviceSurface& surface, const Topology& topology)
+    : surface_(surface), charts_(surface.table(), topology), seeds_(std::make_unique<Seeds>()) {
+    const int grid = std::clamp(static_cast<int>(std::ceil(std::sqrt(wanted_seeds / std::max(1, charts_.count())))), 1, finest_grid);
+    for (Index chart = 0; chart < charts_.count(); ++chart)
+        for (int j = 0; j < grid; ++j)
+            for (int i = 0; i < (charts_.are_triangles() ? grid - j : grid); ++i) {
+                const double middle = charts_.are_triangles() ? 1.0 / 3 : 0.5;
+                seeds_->places.push_back(charts_.place(chart, (i + middle) / grid, (j + middle) / grid));
+            }
+    seeds_->points.resize(3 * seeds_->places.size());
+    Batch batch;
+    SamplePiece piece;
+    for (std::size_t first = 0; first < seeds_->places.size(); first += DeviceSurface::piece_samples) {
+        const std::size_t count = std::min(DeviceSurface::piece_samples, seeds_->places.size() - first);
+        batch.resize(count);
+        for (std::size_t i = 0; i < count; ++i) batch.set(i, charts_.surface_place(seeds_->places[first + i]));
+        SurfaceValues values;
+        values.points = &seeds_->points[3 * first];
+        batch.evaluate(surface_, piece, count, values);
+    }
+    seeds_->tree = std::make_unique<Seeds::Tree>(3, *seeds_, nanoflann::KDTreeSingleIndexAdaptorParams(16));
+    seeds_->tree->buildIndex();
+}
+
+/// The searches for a piece of the points, which go on together, step by step.
+class ClosestSearch::Piece {
+public:
+    Piece(ClosestSearch& search, const double* points, std::size_t stride, std::size_t count)
+        : search_(search), points_(points), stride_(stride), searches_(count), active_(count) {
+        batch_.resize(count);
+    }
+
+    void run(std::size_t first, const ClosestPoints& out) {
+        start();
+        for (int step = 0; step < most_steps && !active_.empty(); ++step) {
+            evaluate_trials();
+            take_trials();
+            set_trials();
+        }
+        give(first, out);
+    }
+
+private:
+    Vector target(std::size_t i) const { return Vector(points_ + i * stride_); }
+
+    template <class Body>
+    static void for_each(std::size_t count, const Body& body) {
+        parallel_for(
+            count,
+            [&](std::size_t begin, std::size_t end) {
+                for (std::size_t i = begin; i < end; ++i) body(i);
+            },
+            smallest_piece);
+    }
+
+    /// Every search begins at the seed that is nearest to its point.
+    void start() {
+        for_each(searches_.size(), [&](std::size_t i) {
+            Index nearest = 0;
+            double square = 0;
+            search_.seeds_->tree->knnSearch(points_ + i * stride_, 1, &nearest, &square);
+            searches_[i].best = search_.seeds_->places[nearest];
+            active_[i] = static_cast<Index>(i);
+            batch_.set(i, search_.charts_.surface_place(searches_[i].best));
+        });
+    }
+
+    void evaluate_trials() {
+        SurfaceValues values;
+        values.points = batch_.points.data(), values.du = batch_.du.data(), values.dv = batch_.dv.data();
+        values.duu = batch_.duu.data(), values.duv = batch_.duv.data(), values.dvv = batch_.dvv.data();
+        batch_.evaluate(search_.surface_, samples_, active_.size(), values);
+    }
+
+    /// A trial that is nearer becomes the best place, from which the next step goes; else the step was too long.
+    void take_trials() {
+        goes_on_.assign(active_.size(), 0);
+        const double tolerance = step_tolerance * search_.surface_.size();
+        for_each(active_.size(), [&](std::size_t k) {
+            Search& search = searches_[active_[k]];
+            const Eigen::Vector3d way = Vector(&batch_.points[3 * k]) - target(active_[k]);
+            if (search.square >= 0 && !(way.squaredNorm() < search.square)) {
+                search.halve();
+            } else {
+                if (search.square >= 0) search.best = search.trial(search_.charts_);
+                search.square = way.squaredNorm();
+                set_step(k, way, search);
+            }
+            goes_on_[k] = search.length > tolerance;
+        });
+        std::size_t kept = 0;
+        for (std::size_t k = 0; k < active_.size(); ++k)
+            if (goes_on_[k]) active_[kept++] = active_[k];
+        active_.resize(kept);
+    }
+
+    /// Newton's step on |S - p|^2 / 2 in the chart: gradient (S - p) . S_a, .., second derivatives S_a . S_b + (S - p) . S_ab, ..
+    void set_step(std::size_t k, const Eigen::Vector3d& way, Search& search) const {
+        const SurfacePlace& place = batch_.places[k];
+        const Vector u(&batch_.du[3 * k]), v(&batch_.dv[3 * k]), uu(&batch_.duu[3 * k]), uv(&batch_.duv[3 * k]), vv(&batch_.dvv[3 * k]);
+        Eigen::Matrix2d turn, metric, bend;
+        turn << place.ua, place.va, place.ub, place.vb;
+        metric << u.dot(u), u.dot(v), u.dot(v), v.dot(v);
+        bend << way.dot(uu), way.dot(uv), way.dot(uv), way.dot(vv);
+        metric = (turn * metric * turn.transpose()).eval();
+        Eigen::Vector2d step =
+            newton_step(metric + turn * bend * turn.transpose(), metric, turn * Eigen::Vector2d(way.dot(u), way.dot(v)), search_.charts_.walls(search.best));
+        const double longest = step.cwiseAbs().maxCoeff();
+        if (longest > longest_step) step *= longest_step / longest;
+        search.step_a = step[0], search.step_b = step[1];
+        search.length = std::sqrt(std::max(0.0, step.dot(metric * step)));
+    }
+
+    void set_trials() {
+        for_each(active_.size(), [&](std::size_t k) { batch_.set(k, search_.charts_.surface_place(searches_[active_[k]].trial(search_.charts_))); });
+    }
+
+    void give(std::size_t first, const ClosestPoints& out) {
+        const std::size_t count = searches_.size();
+        for_each(count, [&](std::size_t i) { batch_.set(i, search_.charts_.surface_place(searches_[i].best)); });
+        SurfaceValues values;
+        values.points = batch_.points.data(), values.normals = batch_.normals.data();
+        batch_.evaluate(search_.surface_, samples_, count, values);
+        for_each(count, [&](std::size_t i) {
+            const Vector at(&batch_.points[3 * i]), normal(&batch_.normals[3 * i]);
+            const Eigen::Vector3d way = target(i) - at;
+            const std::size_t to = first + i;
+            if (out.faces != nullptr) out.faces[to] = batch_.faces[i];
+            if (out.corners != nullptr) out.corners[to] = batch_.corners[i];
+            if (out.uv != nullptr) std::copy_n(&batch_.uv[2 * i], 2, out.uv + 2 * to);
+            if (out.points != nullptr) std::copy_n(at.data(), 3, out.points + 3 * to);
+            if (out.normals != nullptr) std::copy_n(normal.data(), 3, out.normals + 3 * to);
+            if (out.distances != nullptr) out.distances[to] = way.dot(normal) < 0 ? -way.norm() : way.norm();
+        });
+    }
+
+    ClosestSearch& search_;
+    const double* points_;
+    std::size_t stride_;
+    std::vector<Search> searches_;
+    std::vector<Index> active_;  // whose trials stand in batch_, in this order
+    std::vector<char> goes_on_;
+    Batch batch_;
+    SamplePiece samples_;
+};
+
+void ClosestSearch::find(const double* points, std::size_t stride, std::size_t count, const ClosestPoints& out) {
+    surface_.prepare_for(evaluations_a_point * count);
+    for (std::size_t first = 0; first < count; first += DeviceSurface::piece_samples)
+        Piece(*this, points + first * stride, stride, std::min(DeviceSurface::piece_samples, count - first)).run(first, out);
+}
+
+}  // namespace lcl

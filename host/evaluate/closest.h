@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Closest points on a limit surface.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "host/evaluate/charts.h"
+#include "host/evaluate/device_surface.h"
+
+namespace lcl {
+
+/// Where closest points go; arrays of the caller or null, as in limitcl.h.
+struct ClosestPoints {
+    Index *faces = nullptr, *corners = nullptr;
+    double *uv = nullptr, *points = nullptr, *normals = nullptr, *distances = nullptr;
+};
+
+/// Seeds, points of the surface on a grid in every chart, in a k-d tree; from the nearest seed Newton's method on the square of the distance, on the exact
+/// surface and across charts.
+class ClosestSearch {
+public:
+    /// Keeps references to both. Evaluates the seeds at the surface's control points of now.
+    ClosestSearch(DeviceSurface& surface, const Topology& topology);
+    ~ClosestSearch();
+
+    /// points: count rows of three, `stride` values apart, finite.
+    void find(const double* points, std::size_t stride, std::size_t count, const ClosestPoints& out);
+
+private:
+    struct Seeds;
+    class Piece;
+
+    DeviceSurface& surface_;
+    Charts charts_;
+    std::unique_ptr<Seeds> seeds_;
+};
+
+}  // namespace lcl
