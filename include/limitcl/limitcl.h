@@ -536,9 +536,9 @@ typedef struct lcl_refine_options {
 #define LCL_REFINE_OPTIONS_INIT \
     { (uint32_t)sizeof(lcl_refine_options), 0 }
 
-/** Refines uniformly, in double on all cores of the host. alpha_auto, subset and owned are not looked at. alpha and lambda rule the first refinement alone (lambda: the
- * two-phase first step, which gives the mesh M^1); the result is read with alpha 0 and lambda 0, and carries refined creases and corners. Colours and scalar
- * properties are refined as channels; texture coordinates are dropped with a note. */
+/** Refines uniformly, in double on all cores of the host. alpha_auto, subset and owned are not looked at. alpha and lambda rule the first refinement alone
+ * (lambda: the two-phase first step, which gives the mesh M^1); the result is read with alpha 0 and lambda 0, and carries refined creases and corners. Colours
+ * and scalar properties are refined as channels; texture coordinates are dropped with a note. */
 LCL_API lcl_status lcl_mesh_refine(lcl_mesh mesh, const lcl_scheme_options* scheme, const lcl_refine_options* options, lcl_mesh* refined);
 /** Where each vertex of a refined mesh lies on the original's surface, in the parameters of `limitcl evaluate`: faces (-1: isolated) and corners: vertex_count;
  * uv: vertex_count x 2. */
@@ -614,8 +614,8 @@ typedef struct lcl_two_phase_report {
  * solve: as for lcl_interpolate, but warm_start; its progress is also called by fairness, whose residuals go in model units. LCL_OK also where the solve did
  * not converge, as solve_report tells, but did not run away either (to ten times its first residual); LCL_ERROR_SINGULAR, _INDEFINITE, _NOT_CONVERGED
  * otherwise, and `refined` is only made with keep_going. LCL_ERROR_BAD_INPUT, with the vertex, for a normal that cannot be asked for. Reports may be NULL. On
- * devices without double precision steps 2 to 5 run on the host. Linear time but for the solve; some 400 bytes a vertex of M^1 (of which a mesh of quads has
- * nine times its own), three times that with fairness. */
+ * devices without double precision steps 2 to 5 run on the host. Linear time but for the solve; some 250 bytes a vertex of M^1 (of which quads make nine of
+ * one), 50 more with fairness. */
 LCL_API lcl_status lcl_two_phase_mesh(lcl_operator A, lcl_mesh mesh, const lcl_solve_options* solve, const lcl_two_phase_options* options, lcl_mesh* refined,
                                       lcl_solve_report* solve_report, lcl_two_phase_report* report);
 /** For each vertex of the mesh that a two-phase mesh was made from, the vertex of M^1 at whose limit point it lies: its own number, isolated ones too.
