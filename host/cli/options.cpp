@@ -292,7 +292,7 @@ void Parser::add_interpolate() {
 
 void Parser::add_limit() {
     CLI::App* command = add_command("limit", "Every vertex moved to its limit point", true, true);
-    command->add_flag("--normals", options_.normals, "Unit limit normals too (OBJ, PLY, OFF): at creases the mean of the sides, 0 0 0 at isolated vertices");
+    command->add_flag("--normals", options_.limit_normals, "Unit limit normals too (OBJ, PLY, OFF): at creases the mean of the sides, 0 0 0 at isolated vertices");
 }
 
 void Parser::add_refine() {
