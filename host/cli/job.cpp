@@ -50,7 +50,7 @@ std::vector<char> standard_input() {
 
 Mesh read_mesh(Job& job, const std::string& path) {
     const Phase phase(job, &Seconds::read, "reading " + shown_name(path));
-    const bool with_normals = job.options.wanted_normals == "mesh";
+    const bool with_normals = job.options.normals == "mesh";
     lcl_mesh mesh = nullptr;
     if (path != "-") {
         const auto read = with_normals ? lcl_mesh_read_with_normals : lcl_mesh_read;

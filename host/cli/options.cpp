@@ -276,17 +276,12 @@ void Parser::add_interpolate() {
     add_choice(*command, "--solver", options_.solver, solver_names, "Default auto: the fastest that is sure to converge");
     command->add_option("--subset", options_.subset_file, "Interpolate only these vertices, one a line")->type_name("FILE");
     command->add_option("--sweeps", options_.sweeps, "Exactly so many sweeps, no test")->check(count_from(1))->type_name("N");
-    command->add_flag("--refined", options_.refined,
-                      "Two-phase scheme: the refined control mesh M^1, which meets all vertices exactly (with --lambda, as the next four)");
-    command->add_option("--normals", options_.wanted_normals, "Normals to have: a CSV with header vertex,nx,ny,nz, or those of IN")->type_name("FILE|mesh");
-    command
-        ->add_option_function<std::string>(
-            "--handles", [this](const std::string& text) { set_handles(options_, text); },
-            "Shape handles of convex and of other vertices, or a CSV with header vertex,s: above 1 flatter, below 1 sharper")
+    command->add_flag("--refined", options_.refined, "Two-phase scheme: the refined control mesh M^1, which meets all vertices exactly (with --lambda, as the next four)");
+    command->add_option("--normals", options_.normals, "Normals to have: a CSV with header vertex,nx,ny,nz, or those of IN")->type_name("FILE|mesh");
+    command->add_option_function<std::string>("--handles", [this](const std::string& text) { set_handles(options_, text); },
+                                              "Shape handles of convex and of other vertices, or a CSV with header vertex,s: above 1 flatter, below 1 sharper")
         ->type_name("S1,S2|FILE");
-    command->add_option("--fair", options_.fair, "Weight of fairness: bumps are taken out as far as the vertices allow")
-        ->check(positive_number())
-        ->type_name("W");
+    command->add_option("--fair", options_.fair, "Weight of fairness: bumps are taken out as far as the vertices allow")->check(positive_number())->type_name("W");
     command->add_option("--map", options_.map_file, "CSV of the refined vertex of each vertex: vertex,refined_vertex")->type_name("FILE");
 }
 

@@ -53,7 +53,7 @@ struct Options {
     lcl_solver solver = LCL_SOLVER_AUTO;
     std::string subset_file;
     int sweeps = 0;                              ///< 0: until the tolerance is met
-    std::string wanted_normals;                  ///< a CSV, "mesh", or empty: none
+    std::string normals;                         ///< a CSV, "mesh", or empty: none
     std::array<double, 2> handles = {1.0, 1.0};  ///< of convex and other vertices
     std::string handles_file;                    ///< not empty: one a vertex, rules over handles
     bool refined = false;
