@@ -89,8 +89,8 @@ void print_row(const limitcl::Context& context, const limitcl::Mesh& mesh, const
     const double whole_time = median_milliseconds([&] { error = limitcl::interpolate_two_phase(A, mesh, options).report.max_error; });
     const auto valences = mesh.valence_counts();
     std::printf("%-28s %6d  %d..%-3d %6.3f  %-6s %4d %9.3f %% %9.2f %9.2f  %.0e\n", name.c_str(), mesh.vertex_count(), valences.begin()->first,
-                valences.rbegin()->first, lambda, solver == limitcl::Solver::jacobi ? "jacobi" : "gs", sweeps.count, 100 * sweeps.update, solve_time, whole_time,
-                error / mesh.info().diagonal);
+                valences.rbegin()->first, lambda, solver == limitcl::Solver::jacobi ? "jacobi" : "gs", sweeps.count, 100 * sweeps.update, solve_time,
+                whole_time, error / mesh.info().diagonal);
 }
 
 void print_table(const std::vector<std::string>& files) {
@@ -105,8 +105,9 @@ void print_table(const std::vector<std::string>& files) {
                 for (const limitcl::Solver solver : {limitcl::Solver::jacobi, limitcl::Solver::gs})
                     print_row(context, model, model.get() == mesh.get() ? name : name + ", quads", lambda, solver);
     }
-    std::printf("two-phase paper, lambda 1/3, one sweep after the other on a 1.6 GHz Pentium 4: 453 vertices 4 sweeps 0.02 %% 6.2 ms; 567: 4, 0.04 %%, 8.7 ms;\n"
-                "quads: 1388: 3, 0.05 %%, 16 ms; 2084: 3, 0.03 %%, 24 ms; 5726: 3, 0.02 %%, 69 ms\n");
+    std::printf(
+        "two-phase paper, lambda 1/3, one sweep after the other on a 1.6 GHz Pentium 4: 453 vertices 4 sweeps 0.02 %% 6.2 ms; 567: 4, 0.04 %%, 8.7 ms;\n"
+        "quads: 1388: 3, 0.05 %%, 16 ms; 2084: 3, 0.03 %%, 24 ms; 5726: 3, 0.02 %%, 69 ms\n");
 }
 
 }  // namespace

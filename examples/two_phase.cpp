@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// C++17: a surface through a few points of a torus, first by the points alone, then with the torus's normals, then fair too, and with other shape handles. Tells
-// how far each surface is from the torus between the points. With a mesh file that holds normals, writes the refined control mesh that has them.
-// usage: two_phase [MESH REFINED_MESH]
+// C++17: a surface through a few points of a torus, first by the points alone, then with the torus's normals, then fair too, and with other shape handles.
+// Tells how far each surface is from the torus between the points. With a mesh file that holds normals, writes the refined control mesh that has them. usage:
+// two_phase [MESH REFINED_MESH]
 #include <limitcl/limitcl.hpp>
 
 #include <algorithm>

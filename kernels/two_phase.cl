@@ -11,7 +11,14 @@
 // G the Gram matrix of a, b, c. Without a normal N = 0 and eps_k = a_k R / sum a^2, equation 7.
 #include "reduce.cl.h"
 
-typedef LCL_JOIN(LCL_REAL, 3) point;
+/// A point, or three weights, with a fourth component that is 0 throughout: oclgrind's check for uninitialized values cannot follow vectors of three.
+typedef LCL_JOIN(LCL_REAL, 4) point;
+inline point lcl_load(const int i, const __global real *x) { return (point)(x[3 * (size_t)i], x[3 * (size_t)i + 1], x[3 * (size_t)i + 2], 0); }
+inline void lcl_store(const point a, const int i, __global real *x) {
+    x[3 * (size_t)i] = a.x;
+    x[3 * (size_t)i + 1] = a.y;
+    x[3 * (size_t)i + 2] = a.z;
+}
 
 /// offsets: count + 1, first point of each umbrella. mask_of: count, number of the umbrella's mask. mask_offsets: first entry of each mask. masks: entries x 3, weights a, b, c.
 /// grams: masks x 7, 1 / sum a^2, then the inverse of G: (0,0) (0,1) (0,2) (1,1) (1,2) (2,2), zeros where there are no tangents. All read.
@@ -25,31 +32,31 @@ typedef struct {
     point limit, first, second;
 } lcl_mask_sums;
 
-inline lcl_mask_sums lcl_sum_masks(const int u, LCL_UMBRELLAS, const __global real *x) {
+inline void lcl_sum_masks(const int u, LCL_UMBRELLAS, const __global real *x, lcl_mask_sums *found) {
     const __global real *mask = masks + 3 * mask_offsets[mask_of[u]];
-    const point centre = vload3(offsets[u], x);
+    const point centre = lcl_load(offsets[u], x);
     lcl_mask_sums sums;
     sums.limit = sums.first = sums.second = (point)(0);
     for (int k = offsets[u] + 1, entry = 1; k < offsets[u + 1]; ++k, ++entry) {
-        const point from_centre = vload3(k, x) - centre, weights = vload3(entry, mask);
+        const point from_centre = lcl_load(k, x) - centre, weights = lcl_load(entry, mask);
         sums.limit += weights.x * from_centre;
         sums.first += weights.y * from_centre;
         sums.second += weights.z * from_centre;
     }
-    return sums;
+    *found = sums;
 }
 
 /// x += eps on the umbrella; residual: Q - V_inf.
-inline void lcl_least_norm_step(const int u, LCL_UMBRELLAS, const lcl_mask_sums sums, const point residual, const point normal, __global real *x) {
+inline void lcl_least_norm_step(const int u, LCL_UMBRELLAS, const lcl_mask_sums *sums, const point residual, const point normal, __global real *x) {
     const __global real *mask = masks + 3 * mask_offsets[mask_of[u]];
     const __global real *gram = grams + 7 * mask_of[u];
-    const real along = dot(residual, normal), first = -dot(sums.first, normal), second = -dot(sums.second, normal);
+    const real along = dot(residual, normal), first = -dot(sums->first, normal), second = -dot(sums->second, normal);
     const point y = {gram[1] * along + gram[2] * first + gram[3] * second, gram[2] * along + gram[4] * first + gram[5] * second,
-                     gram[3] * along + gram[5] * first + gram[6] * second};
+                     gram[3] * along + gram[5] * first + gram[6] * second, 0};
     const point across = gram[0] * (residual - along * normal);
     for (int k = offsets[u], entry = 0; k < offsets[u + 1]; ++k, ++entry) {
-        const point weights = vload3(entry, mask);
-        vstore3(vload3(k, x) + weights.x * across + dot(weights, y) * normal, k, x);
+        const point weights = lcl_load(entry, mask);
+        lcl_store(lcl_load(k, x) + weights.x * across + dot(weights, y) * normal, k, x);
     }
 }
 
@@ -62,19 +69,22 @@ __kernel void lcl_umbrella_repair(const int count, LCL_UMBRELLAS, const __global
     distances[u] = 0;
     sides[u] = 1;
     if (!constrained[u]) return;
-    const lcl_mask_sums sums = lcl_sum_masks(u, LCL_UMBRELLA_ARGUMENTS, x);
-    const point residual = (vload3(u, targets) - vload3(offsets[u], x)) - sums.limit, normal = vload3(u, normals);
+    lcl_mask_sums sums;
+    lcl_sum_masks(u, LCL_UMBRELLA_ARGUMENTS, x, &sums);
+    const point residual = (lcl_load(u, targets) - lcl_load(offsets[u], x)) - sums.limit, normal = lcl_load(u, normals);
     distances[u] = length(residual);
     if (dot(normal, normal) > 0) sides[u] = dot(cross(sums.first, sums.second), normal);
-    lcl_least_norm_step(u, LCL_UMBRELLA_ARGUMENTS, sums, residual, normal, x);
+    lcl_least_norm_step(u, LCL_UMBRELLA_ARGUMENTS, &sums, residual, normal, x);
 }
 
 /// X <- V_inf + S (X - V_inf). handles: count, S. x: points of M^1 x 3, updated.
 __kernel void lcl_umbrella_scale(const int count, LCL_UMBRELLAS, const __global real *restrict handles, __global real *restrict x) {
     const int u = get_global_id(0);
     if (u >= count || handles[u] == 1) return;
-    const point limit = vload3(offsets[u], x) + lcl_sum_masks(u, LCL_UMBRELLA_ARGUMENTS, x).limit;
-    for (int k = offsets[u]; k < offsets[u + 1]; ++k) vstore3(limit + handles[u] * (vload3(k, x) - limit), k, x);
+    lcl_mask_sums sums;
+    lcl_sum_masks(u, LCL_UMBRELLA_ARGUMENTS, x, &sums);
+    const point limit = lcl_load(offsets[u], x) + sums.limit;
+    for (int k = offsets[u]; k < offsets[u + 1]; ++k) lcl_store(limit + handles[u] * (lcl_load(k, x) - limit), k, x);
 }
 
 #define LCL_COUNTS 0x80000000u
@@ -93,13 +103,13 @@ __kernel __attribute__((reqd_work_group_size(LCL_GROUP, 1, 1))) void lcl_fair_la
     const int lane = get_local_id(0), block = get_group_id(0);
     sum_real sum = 0;
     for (int i = block * block_rows + lane; i < min(count, (block + 1) * block_rows); i += LCL_GROUP) {
-        const point own = vload3(i, x);
+        const point own = lcl_load(i, x);
         const real share = (real)(1) / (real)(max(lengths[i], 1));
         point row = (point)(0);
         for (uint e = row_offsets[i]; e < row_offsets[i + 1]; ++e)
-            if (neighbours[e] & LCL_COUNTS) row += vload3(neighbours[e] & LCL_PLACE, x) - own;
+            if (neighbours[e] & LCL_COUNTS) row += lcl_load(neighbours[e] & LCL_PLACE, x) - own;
         row *= share;
-        vstore3(share * row, i, z);
+        lcl_store(share * row, i, z);
         sum += dot(row, row);
     }
     LCL_GROUP_STORE_SUM(sum, scratch, sums, block);
@@ -107,9 +117,9 @@ __kernel __attribute__((reqd_work_group_size(LCL_GROUP, 1, 1))) void lcl_fair_la
 
 /// (L^T L x)_i, x that of lcl_fair_laplacian: every row that counts i gives its share, i's own takes it away.
 inline point lcl_transposed(const int i, LCL_FAIR_ROWS, const __global real *restrict z) {
-    point value = -(real)(lengths[i]) * vload3(i, z);
+    point value = -(real)(lengths[i]) * lcl_load(i, z);
     for (uint e = row_offsets[i]; e < row_offsets[i + 1]; ++e)
-        if (neighbours[e] & LCL_IS_COUNTED) value += vload3(neighbours[e] & LCL_PLACE, z);
+        if (neighbours[e] & LCL_IS_COUNTED) value += lcl_load(neighbours[e] & LCL_PLACE, z);
     return value;
 }
 
@@ -124,12 +134,13 @@ __kernel __attribute__((reqd_work_group_size(LCL_GROUP, 1, 1))) void lcl_fair_ap
     sum_real sum = 0;
     for (int u = block * block_rows + lane; u < min(count, (block + 1) * block_rows); u += LCL_GROUP) {
         for (int i = offsets[u]; i < offsets[u + 1]; ++i)
-            vstore3(shift * vload3(i, p) + fair_weight * lcl_transposed(i, row_offsets, neighbours, lengths, z), i, q);
+            lcl_store(shift * lcl_load(i, p) + fair_weight * lcl_transposed(i, row_offsets, neighbours, lengths, z), i, q);
         if (constrained[u]) {
-            const lcl_mask_sums found = lcl_sum_masks(u, LCL_UMBRELLA_ARGUMENTS, q);
-            lcl_least_norm_step(u, LCL_UMBRELLA_ARGUMENTS, found, -vload3(offsets[u], q) - found.limit, vload3(u, normals), q);
+            lcl_mask_sums found;
+            lcl_sum_masks(u, LCL_UMBRELLA_ARGUMENTS, q, &found);
+            lcl_least_norm_step(u, LCL_UMBRELLA_ARGUMENTS, &found, -lcl_load(offsets[u], q) - found.limit, lcl_load(u, normals), q);
         }
-        for (int i = offsets[u]; i < offsets[u + 1]; ++i) sum += dot(vload3(i, p), vload3(i, q));
+        for (int i = offsets[u]; i < offsets[u + 1]; ++i) sum += dot(lcl_load(i, p), lcl_load(i, q));
     }
     LCL_GROUP_STORE_SUM(sum, scratch, sums, block);
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The two-phase scheme through the C API: limit points of M^1 by its own operator, reports, channels, the map, normals of files, every refusal. The mathematics:
-// two_phase_test.
+// The two-phase scheme through the C API: limit points of M^1 by its own operator, reports, channels, the map, normals of files, every refusal. The
+// mathematics: two_phase_test.
 #include "tests/capi_support.h"
 
 using namespace capi_test;
@@ -160,7 +160,8 @@ TEST_CASE("a two-phase mesh refuses what it cannot take", "[two-phase][capi]") {
     refuse(lcl_two_phase_mesh(A.get(), nullptr, nullptr, nullptr, &out, nullptr, nullptr), LCL_ERROR_INVALID_ARGUMENT, "mesh is NULL");
     refuse(lcl_two_phase_mesh(A.get(), mesh.get(), nullptr, nullptr, nullptr, nullptr, nullptr), LCL_ERROR_INVALID_ARGUMENT, "refined is NULL");
     refuse(lcl_two_phase_mesh(plain.get(), mesh.get(), nullptr, nullptr, &out, nullptr, nullptr), LCL_ERROR_INVALID_ARGUMENT, "8 vertices");
-    refuse(lcl_two_phase_mesh(plain.get(), make_mesh(shapes::cube()).get(), nullptr, nullptr, &out, nullptr, nullptr), LCL_ERROR_INVALID_ARGUMENT, "lambda is 0.0");
+    refuse(lcl_two_phase_mesh(plain.get(), make_mesh(shapes::cube()).get(), nullptr, nullptr, &out, nullptr, nullptr), LCL_ERROR_INVALID_ARGUMENT,
+           "lambda is 0.0");
     lcl_solve_options solve = LCL_SOLVE_OPTIONS_INIT;
     solve.warm_start = 1;
     refuse(lcl_two_phase_mesh(A.get(), mesh.get(), &solve, nullptr, &out, nullptr, nullptr), LCL_ERROR_INVALID_ARGUMENT, "warm_start");
@@ -186,9 +187,10 @@ TEST_CASE("normals of a file are read where they are asked for", "[two-phase][ca
     };
     const std::string obj = "vn 0 0 1\nvn 0 2 0\nvn 1 0 0\nv 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\nf 1//1 2//-1 3//2\nf 2//3 4 3//1\n";
     const std::string off = "NOFF\n4 2 0\n0 0 0 0 0 1\n1 0 0 1 0 0\n0 1 0 0 1 0.5\n1 1 0 nan nan nan\n3 0 1 2\n3 1 3 2\n";
-    const std::string ply = "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\nproperty float nx\nproperty float ny\n"
-                            "property float nz\nelement face 2\nproperty list uchar int vertex_indices\nend_header\n0 0 0 0 0 1\n1 0 0 1 0 0\n0 1 0 0 1 0.5\n"
-                            "1 1 0 nan nan nan\n3 0 1 2\n3 1 3 2\n";
+    const std::string ply =
+        "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\nproperty float nx\nproperty float ny\n"
+        "property float nz\nelement face 2\nproperty list uchar int vertex_indices\nend_header\n0 0 0 0 0 1\n1 0 0 1 0 0\n0 1 0 0 1 0.5\n"
+        "1 1 0 nan nan nan\n3 0 1 2\n3 1 3 2\n";
     const std::vector<double> expected{0, 0, 1, 1, 0, 0, 0, 1, 0.5};
     for (const File& file : {File{LCL_FORMAT_OBJ, obj}, {LCL_FORMAT_OFF, off}, {LCL_FORMAT_PLY, ply}}) {
         lcl_mesh handle = nullptr;
@@ -212,5 +214,6 @@ TEST_CASE("normals of a file are read where they are asked for", "[two-phase][ca
     succeed(lcl_mesh_read_memory_with_normals(none.data(), none.size(), LCL_FORMAT_OBJ, "none", &handle));
     std::vector<double> normals(9);
     refuse(lcl_mesh_get_normals(Mesh(handle).get(), normals.data()), LCL_ERROR_BAD_INPUT, "holds no normals");
-    refuse(lcl_mesh_read_memory_with_normals(wrong.data(), wrong.size(), LCL_FORMAT_OBJ, "wrong", &handle), LCL_ERROR_BAD_INPUT, "wrong:2: a normal needs three");
+    refuse(lcl_mesh_read_memory_with_normals(wrong.data(), wrong.size(), LCL_FORMAT_OBJ, "wrong", &handle), LCL_ERROR_BAD_INPUT,
+           "wrong:2: a normal needs three");
 }

@@ -67,12 +67,7 @@ TEST_CASE("what comes with a later version is refused by name", "[cli][exit]") {
     folder.file("in.obj", octahedron);
     const auto [arguments, name] = GENERATE(table<std::string, std::string>({{"surface --help", "'surface'"},
                                                                              {"--quiet surface in.xyz", "'surface'"},
-                                                                             {"surface in.xyz -o o.obj", "'surface'"},
-                                                                             {"interpolate in.obj -o o.obj --normals mesh --lambda 0.3", "--normals"},
-                                                                             {"interpolate in.obj -o o.obj --handles 1,2 --lambda 0.3", "--handles"},
-                                                                             {"interpolate in.obj -o o.obj --refined --lambda 0.3", "--refined"},
-                                                                             {"interpolate in.obj -o o.obj --fair 1 --lambda 0.3", "--fair"},
-                                                                             {"interpolate in.obj -o o.obj --map m.csv --lambda 0.3", "--map"}}));
+                                                                             {"surface in.xyz -o o.obj", "'surface'"}}));
     const Outcome outcome = run(folder, arguments);
     INFO(arguments << "\n" << outcome.err);
     CHECK(outcome.exit_code == 2);

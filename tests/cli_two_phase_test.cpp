@@ -36,8 +36,9 @@ TEST_CASE("interpolate --refined writes M^1, whose limit points are the vertices
         for (int v = 0; v < 36; ++v) text += std::to_string(v) + (v % 2 ? ",0.25\n" : ",0.45\n");
         return text;
     }());
-    for (const std::string options : {"--lambda 0.3 --refined --map map.csv", "--lambda lambda.csv --refined --sweeps 5 --solver gs", "--lambda 0.5 --handles 1.3,0.6",
-                                      "--lambda 0.3 --fair 10", "--lambda 0.3 --refined --max-iter 1", "--lambda 0.3 --alpha 0.5 --refined --channels none"}) {
+    for (const std::string options :
+         {"--lambda 0.3 --refined --map map.csv", "--lambda lambda.csv --refined --sweeps 5 --solver gs", "--lambda 0.5 --handles 1.3,0.6",
+          "--lambda 0.3 --fair 10", "--lambda 0.3 --refined --max-iter 1", "--lambda 0.3 --alpha 0.5 --refined --channels none"}) {
         const Outcome outcome = interpolate(folder, options);
         INFO(options << ": " << outcome.err);
         CHECK(outcome.exit_code == 0);

@@ -85,8 +85,7 @@ inline Fan fan_of(const std::vector<std::vector<int>>& faces, int v) {
 inline Eigen::Vector3d deep_normal(const oracle::Surface& surface, const Eigen::MatrixXd& points, int v, const Eigen::Vector3d& limit, int levels) {
     const Fan fan = fan_of(surface.faces, v);
     const bool is_closed = fan.faces == fan.edges;
-    const Eigen::MatrixXd step =
-        umbrella_step(umbrella(fan.faces, is_closed, is_closed ? std::vector<int>{} : std::vector<int>{0, fan.edges - 1}));
+    const Eigen::MatrixXd step = umbrella_step(umbrella(fan.faces, is_closed, is_closed ? std::vector<int>{} : std::vector<int>{0, fan.edges - 1}));
     Eigen::MatrixXd ring(fan.vertices.size(), 3);
     for (std::size_t k = 0; k < fan.vertices.size(); ++k) ring.row(k) = points.row(fan.vertices[k]) - limit.transpose();
     for (int level = 0; level < levels; ++level) ring = step * ring;

@@ -62,9 +62,10 @@ Eigen::Vector3d row_of(const std::vector<double>& values, int v) { return {value
 std::vector<shapes::Shape> rough_shapes() {
     std::vector<shapes::Shape> all;
     for (const shapes::Shape& shape :
-         {shapes::cube(), shapes::octahedron(), shapes::icosphere(1), shapes::polygons_mixed(40, 3), shapes::random_triangle_mesh(40, 2, 8), shapes::grid_quads(4, 3),
-          shapes::grid_triangles(3, 3), shapes::cylinder_open(5, 3), shapes::disk_pole_triangles(6), shapes::cube_with_crease(), shapes::grid_with_creases(),
-          shapes::grid_with_marked_corner(), shapes::torus_with_dart(), shapes::cube_split_edges(), shapes::with_isolated_vertex(shapes::cube(), 3)})
+         {shapes::cube(), shapes::octahedron(), shapes::icosphere(1), shapes::polygons_mixed(40, 3), shapes::random_triangle_mesh(40, 2, 8),
+          shapes::grid_quads(4, 3), shapes::grid_triangles(3, 3), shapes::cylinder_open(5, 3), shapes::disk_pole_triangles(6), shapes::cube_with_crease(),
+          shapes::grid_with_creases(), shapes::grid_with_marked_corner(), shapes::torus_with_dart(), shapes::cube_split_edges(),
+          shapes::with_isolated_vertex(shapes::cube(), 3)})
         all.push_back(shapes::rough(shape, 0.05, 7));
     return all;
 }
@@ -114,8 +115,13 @@ TEST_CASE("a repair is the least change that meets the limit point and the tange
         UmbrellaKind kind;
         int n;
     };
-    for (const Kind& kind : {Kind{UmbrellaKind::smooth, 3}, {UmbrellaKind::smooth, 4}, {UmbrellaKind::smooth, 7}, {UmbrellaKind::smooth, 12},
-                             {UmbrellaKind::boundary, 2}, {UmbrellaKind::boundary, 3}, {UmbrellaKind::boundary, 4}}) {
+    for (const Kind& kind : {Kind{UmbrellaKind::smooth, 3},
+                             {UmbrellaKind::smooth, 4},
+                             {UmbrellaKind::smooth, 7},
+                             {UmbrellaKind::smooth, 12},
+                             {UmbrellaKind::boundary, 2},
+                             {UmbrellaKind::boundary, 3},
+                             {UmbrellaKind::boundary, 4}}) {
         Umbrellas one;
         one.count = 1;
         one.masks = {umbrella_mask(kind.kind, kind.n)};
@@ -211,7 +217,7 @@ TEST_CASE("the surface of M^1 has the normals asked for, and handles change neit
             ++count;
             const Fan fan = fan_of(surface.faces, v);
             if (fan.faces != fan.edges && fan.faces > 3) continue;  // with four, refined normals come near only like 1 / level
-            const int levels = fan.faces > 4 ? 36 : 22;  // bends die out slowly at high valences; at low ones the ring soon is as small as rounding
+            const int levels = fan.faces > 4 ? 36 : 22;             // bends die out slowly at high valences; at low ones the ring soon is as small as rounding
             const double off = angle(deep_normal(surface, points, v, q, levels), n);
             worst_angle = std::max(worst_angle, made.findings.wrong_side_count == 0 ? off : std::min(off, 3.14159265358979323846 - off));
         }
@@ -322,7 +328,8 @@ TEST_CASE("fairness lowers the energy to what it is on rough meshes and on a tor
         shapes::Shape shape;
         double lowest, highest;
     };
-    for (const Case& c : {Case{shapes::rough(shapes::icosphere_quads(1), 0.1, 1), 0.36, 0.52}, {shapes::rough(shapes::polygons_mixed(80, 2), 0.1, 2), 0.3, 0.52},
+    for (const Case& c : {Case{shapes::rough(shapes::icosphere_quads(1), 0.1, 1), 0.36, 0.52},
+                          {shapes::rough(shapes::polygons_mixed(80, 2), 0.1, 2), 0.3, 0.52},
                           {shapes::torus_quads(16, 8), 0.58, 0.70}}) {
         TwoPhaseOptions options;
         options.fair = 1e4;
@@ -352,8 +359,8 @@ TEST_CASE("vertices outside the subset are not constrained", "[two-phase]") {
         else CHECK(off > 1e-3 * diagonal_of(mesh));
     }
     options.normals.assign(3 * subset.size(), 1.0);
-    CHECK_THROWS_WITH(make(mesh, catmull_clark(0, 0.3), options, subset), Catch::Matchers::Contains("vertex 1 can have no prescribed normal") &&
-                                                                              Catch::Matchers::Contains("not in the subset"));
+    CHECK_THROWS_WITH(make(mesh, catmull_clark(0, 0.3), options, subset),
+                      Catch::Matchers::Contains("vertex 1 can have no prescribed normal") && Catch::Matchers::Contains("not in the subset"));
     options.skip_normals = true;
     CHECK(make(mesh, catmull_clark(0, 0.3), options, subset).findings.skipped_normals == 15);
 }
@@ -477,7 +484,8 @@ void compare_with_host(const shapes::Shape& shape, double fair) {
     options.convex_handle = 1.3, options.other_handle = 0.7;
     options.fair = fair;
     const TwoPhase device = make(mesh, catmull_clark(0, 0.3), options), host = make(mesh, catmull_clark(0, 0.3), options, {}, context_without_double());
-    CHECK((coordinates(device.refined.mesh) - coordinates(host.refined.mesh)).cwiseAbs().maxCoeff() <= 1e-10);  // the tolerance of the solve, and of fairness, which sees other rounding
+    CHECK((coordinates(device.refined.mesh) - coordinates(host.refined.mesh)).cwiseAbs().maxCoeff() <=
+          1e-10);  // the tolerance of the solve, and of fairness, which sees other rounding
     CHECK(device.findings.wrong_side == host.findings.wrong_side);
 }
 
@@ -497,21 +505,23 @@ TEST_CASE("the kernels of the two-phase scheme run once on a small mesh", "[two-
     const Topology topology = build_topology(refined.mesh);
     const FairRows rows = build_fair_rows(umbrellas, topology, find_features(refined.mesh, topology, refined.features));
     const auto count = static_cast<std::size_t>(umbrellas.count);
-    UmbrellaTargets targets{mesh.shape.mesh.positions, std::vector<std::uint8_t>(count, 1), std::vector<double>(3 * count, 0.0), std::vector<double>(count, 1.2)};
+    UmbrellaTargets targets{mesh.shape.mesh.positions, std::vector<std::uint8_t>(count, 1), std::vector<double>(3 * count, 0.0),
+                            std::vector<double>(count, 1.2)};
     targets.constrained[2] = 0;
-    std::vector<double> found[2];
-    for (const bool on_device : {false, true}) {
-        const auto steps = on_device ? make_device_steps(device_context(), umbrellas, targets) : make_host_steps(umbrellas, targets);
+    std::vector<double> found[3];
+    for (const int kind : {0, 1, 2}) {  // the host, and the device with one work-item a group and with eight
+        const auto steps = kind == 0 ? make_host_steps(umbrellas, targets) : make_device_steps(device_context(), umbrellas, targets, kind == 1 ? 1 : 8);
         steps->upload(refined.mesh.positions);
         steps->repair();
         steps->set_fairness(rows, 1);
         const double square = steps->begin(), alpha = square / steps->apply();
         steps->turn(steps->update(alpha) / square);
         steps->scale();
-        steps->download(found[on_device]);
-        found[on_device].push_back(steps->energy());
+        steps->download(found[kind]);
+        found[kind].push_back(steps->energy());
     }
-    for (std::size_t i = 0; i < found[0].size(); ++i) CHECK(std::abs(found[0][i] - found[1][i]) <= 1e-13);
+    for (const int kind : {1, 2})
+        for (std::size_t i = 0; i < found[0].size(); ++i) CHECK(std::abs(found[kind][i] - found[0][i]) <= 1e-13);
 }
 
 namespace {
@@ -544,7 +554,8 @@ std::optional<Prepared> real_mesh(const std::string& name) {
 TEST_CASE("few sweeps come to rest, as in table 1 of the two-phase paper", "[two-phase][solver]") {
     // The paper: 3 or 4 for lambda 1/3, and never more than 5. Jacobi takes one or two more on some meshes, and up to ten at 0.2, where it barely contracts.
     std::vector<Prepared> meshes{Prepared(shapes::icosphere(3)), Prepared(shapes::icosphere_quads(2)), Prepared(shapes::torus_quads(40, 30))};
-    for (const char* name : {"tri/cgal_helmet.off", "uv/fuze.obj", "tri/cgal_cactus.off", "tri/cgal_hand.off", "quad/quadknot.obj", "tri/max-planck-decimated.obj.gz"})
+    for (const char* name :
+         {"tri/cgal_helmet.off", "uv/fuze.obj", "tri/cgal_cactus.off", "tri/cgal_hand.off", "quad/quadknot.obj", "tri/max-planck-decimated.obj.gz"})
         if (std::optional<Prepared> mesh = real_mesh(name)) meshes.push_back(std::move(*mesh));
     for (const Prepared& mesh : meshes)
         for (const double lambda : {0.2, 1.0 / 3, 0.5}) {
@@ -555,7 +566,8 @@ TEST_CASE("few sweeps come to rest, as in table 1 of the two-phase paper", "[two
 }
 
 TEST_CASE("real meshes are met with their normals", "[two-phase][collection]") {
-    for (const char* name : {"tri/cgal_helmet.off", "quad/fandisk_quads.off", "quad/suzanne.obj", "boundary/cat_head.obj", "ngon/shark.ply", "tri/cgal_hand.off"}) {
+    for (const char* name :
+         {"tri/cgal_helmet.off", "quad/fandisk_quads.off", "quad/suzanne.obj", "boundary/cat_head.obj", "ngon/shark.ply", "tri/cgal_hand.off"}) {
         const std::optional<Prepared> mesh = real_mesh(name);
         if (!mesh) return;
         for (const double fair : {0.0, 10.0}) {

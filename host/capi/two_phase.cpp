@@ -97,9 +97,9 @@ lcl_status lcl_two_phase_mesh(lcl_operator A, lcl_mesh mesh, const lcl_solve_opt
         const lcl_two_phase_options given = options_or(options, LCL_TWO_PHASE_OPTIONS_INIT, "options");
         const std::vector<VertexProperty>& properties = mesh->file.properties;
         const auto vertices = static_cast<std::size_t>(mesh->file.mesh.vertex_count);
-        TwoPhase made = interpolate_two_phase(system, mesh->file.mesh, mesh->topology(), mesh->features(), mesh->named_features(),
-                                              property_channels(properties, vertices), channel_marks(properties, given),
-                                              inner_options(given, given_solve, vertices));
+        TwoPhase made =
+            interpolate_two_phase(system, mesh->file.mesh, mesh->topology(), mesh->features(), mesh->named_features(), property_channels(properties, vertices),
+                                  channel_marks(properties, given), inner_options(given, given_solve, vertices));
         give_findings(report, made.findings);
         if (!made.is_given) return conclude(made.report, given_solve, solve_report);
         auto out = make_refined_mesh(*mesh, std::move(made.refined), 1);

@@ -56,9 +56,9 @@ struct MeshFile {
     std::vector<std::pair<std::string, Index>> unknown_statements;  ///< OBJ statements that were skipped, with their number
     std::vector<double> normals;                                    ///< only for writing (limit normals): vertex_count x 3, or empty
     std::vector<double> given_normals;  ///< only from reading, where asked for: vertex_count x 3, NaN where a vertex has none; empty where none has one
-    std::vector<std::string> warnings;                              ///< what could not be kept, one sentence each
-    std::string ply_encoding;                                       ///< "ascii", "binary_little_endian", "binary_big_endian"; empty: the default
-    std::string ply_position_type;                                  ///< "float", "double"; empty: double
+    std::vector<std::string> warnings;  ///< what could not be kept, one sentence each
+    std::string ply_encoding;           ///< "ascii", "binary_little_endian", "binary_big_endian"; empty: the default
+    std::string ply_position_type;      ///< "float", "double"; empty: double
 };
 
 /// The format that an ending names (any case, .gz stripped); InvalidArgument if it names none. `gzip` says whether .gz was there.

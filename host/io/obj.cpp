@@ -2,8 +2,8 @@
 // Wavefront OBJ with OpenSubdiv's tags: https://paulbourke.net/dataformats/obj/ and OpenSubdiv's regression/common/shape_utils.
 //
 // Kept: v (x y z, with r g b [a] behind them as many programs write), vt, f, the lines o g s usemtl mtllib in their place, and the tags crease, corner and
-// interpolateboundary. vn only where asked for. Dropped: w of a vertex. Everything else is counted. Colours are numbers from 0 to 1 in this format; integer columns of
-// other formats are divided by their full intensity when written.
+// interpolateboundary. vn only where asked for. Dropped: w of a vertex. Everything else is counted. Colours are numbers from 0 to 1 in this format; integer
+// columns of other formats are divided by their full intensity when written.
 //
 // A text is read in parts of whole lines, at once. What is wrong in a part is not said before the whole has been looked at from its beginning, so that the
 // sentence, its line number included, is the one for the first line that is wrong.

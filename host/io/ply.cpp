@@ -2,9 +2,9 @@
 // PLY, ASCII and both binary encodings: Greg Turk, "The PLY Polygon File Format", 1994. A file names its elements and their properties; what is in
 // them is read by that description alone.
 //
-// Kept: x y z, every other scalar of a vertex (with its type) save nx ny nz, which only come where asked for, the faces' list vertex_indices or vertex_index, and their list texcoord
-// (two numbers a corner, as MeshLab writes it). Everything else is skipped, with a warning. An ASCII row ends with its line. ASCII numbers are read and
-// written as doubles, also where the header says float: text can hold them, and nothing is lost.
+// Kept: x y z, every other scalar of a vertex (with its type) save nx ny nz, which only come where asked for, the faces' list vertex_indices or vertex_index,
+// and their list texcoord (two numbers a corner, as MeshLab writes it). Everything else is skipped, with a warning. An ASCII row ends with its line. ASCII
+// numbers are read and written as doubles, also where the header says float: text can hold them, and nothing is lost.
 #include <algorithm>
 
 #include "host/io/join_faces.h"
@@ -193,7 +193,8 @@ private:
         file_.mesh.positions.resize(3 * element.count);
         file_.properties.reserve(element.properties.size());
         std::vector<Column> columns(element.properties.size());
-        const bool has_normals = input_.with_normals && find_property(element, "nx") >= 0 && find_property(element, "ny") >= 0 && find_property(element, "nz") >= 0;
+        const bool has_normals =
+            input_.with_normals && find_property(element, "nx") >= 0 && find_property(element, "ny") >= 0 && find_property(element, "nz") >= 0;
         if (has_normals) file_.given_normals.resize(3 * element.count);
         double* const positions = element.count > 0 ? file_.mesh.positions.data() : nullptr;
         for (std::size_t p = 0; p < columns.size(); ++p) {

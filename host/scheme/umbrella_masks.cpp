@@ -60,8 +60,7 @@ void invert_gram(UmbrellaMask& mask) {
     const double ab = gram(mask, 0, 1), ac = gram(mask, 0, 2), bb = gram(mask, 1, 1), bc = gram(mask, 1, 2), cc = gram(mask, 2, 2);
     const double from_bc = bb * cc - bc * bc, from_ab = ac * bc - ab * cc, from_ac = ab * bc - ac * bb;
     const double determinant = aa * from_bc + ab * from_ab + ac * from_ac;
-    mask.inverse_gram = {from_bc,           from_ab, from_ac, aa * cc - ac * ac, ab * ac - aa * bc,
-                         aa * bb - ab * ab};
+    mask.inverse_gram = {from_bc, from_ab, from_ac, aa * cc - ac * ac, ab * ac - aa * bc, aa * bb - ab * ab};
     for (double& element : mask.inverse_gram) element /= determinant;
 }
 

@@ -12,12 +12,12 @@ constexpr cl_int rows_a_lane = 512;  // a work-group sums on a CPU, where it is 
 
 class DeviceSteps : public UmbrellaSteps {
 public:
-    DeviceSteps(std::shared_ptr<Context> context, const Umbrellas& umbrellas, const UmbrellaTargets& targets)
+    DeviceSteps(std::shared_ptr<Context> context, const Umbrellas& umbrellas, const UmbrellaTargets& targets, int group)
         : context_(std::move(context)),
           umbrellas_(umbrellas),
           count_(umbrellas.count),
           points_(umbrellas.vertex_count),
-          group_(launch_shape(context_->device(), umbrellas.vertex_count).group),
+          group_(group > 0 ? group : launch_shape(context_->device(), umbrellas.vertex_count).group),
           block_rows_(group_ == 1 ? rows_a_lane : 4 * group_),
           options_(kernel_options(*context_, Real::full, 1, group_)),
           offsets_(upload(umbrellas.offsets, "the umbrellas of a refined mesh")),
@@ -44,8 +44,8 @@ public:
     RepairFindings repair() override {
         const std::size_t bytes = static_cast<std::size_t>(count_) * sizeof(double);
         const Buffer distances(context_, bytes, "the findings of a repair"), sides(context_, bytes, "the findings of a repair");
-        launch(*context_, kernel("lcl_umbrella_repair"), by_item(count_), count_, offsets_, mask_of_, mask_offsets_, masks_, grams_, constrained_,
-               targets_, normals_, x_, distances, sides);
+        launch(*context_, kernel("lcl_umbrella_repair"), by_item(count_), count_, offsets_, mask_of_, mask_offsets_, masks_, grams_, constrained_, targets_,
+               normals_, x_, distances, sides);
         RepairFindings found{std::vector<double>(count_), std::vector<double>(count_)};
         context_->read(distances, 0, bytes, found.distances.data(), "reading the findings of a repair");
         context_->read(sides, 0, bytes, found.sides.data(), "reading the findings of a repair");
@@ -61,8 +61,9 @@ public:
         row_offsets_ = upload(rows.offsets, "the neighbours of a refined mesh");
         neighbours_ = upload(rows.neighbours, "the neighbours of a refined mesh");
         lengths_ = upload(rows.lengths, "the neighbours of a refined mesh");
-        z_ = make("the fairness of a refined mesh"), p_ = make("the fairness of a refined mesh");
-        q_ = make("the fairness of a refined mesh"), r_ = make("the fairness of a refined mesh");
+        const std::vector<double> zeros(numbers(), 0.0);
+        p_ = upload(zeros, "the fairness of a refined mesh"), r_ = upload(zeros, "the fairness of a refined mesh");
+        z_ = make("the fairness of a refined mesh"), q_ = make("the fairness of a refined mesh");
         sums_ = Buffer(context_, blocks(numbers()) * sizeof(double), "the sums of fairness");
     }
 
@@ -72,11 +73,9 @@ public:
     }
 
     double begin() override {
-        context_->fill_zero(p_, "starting fairness");
-        context_->fill_zero(r_, "starting fairness");
         laplacian(x_);
         project_gradient(0);
-        const double square = update(0, 1);  // r = -q
+        const double square = update(0, 1);  // r = -q, r and p being zero
         turn(0);
         return square;
     }
@@ -132,8 +131,8 @@ private:
 
     /// q = C (shift p + W L^T L v), v that of laplacian
     void project_gradient(double shift) {
-        launch(*context_, kernel("lcl_fair_apply"), by_block(count_), count_, block_rows_, offsets_, mask_of_, mask_offsets_, masks_, grams_,
-               row_offsets_, neighbours_, lengths_, constrained_, normals_, shift, weight_, p_, z_, q_, sums_);
+        launch(*context_, kernel("lcl_fair_apply"), by_block(count_), count_, block_rows_, offsets_, mask_of_, mask_offsets_, masks_, grams_, row_offsets_,
+               neighbours_, lengths_, constrained_, normals_, shift, weight_, p_, z_, q_, sums_);
     }
 
     /// x += alpha p, r -= beta q
@@ -165,8 +164,8 @@ private:
 
 }  // namespace
 
-std::unique_ptr<UmbrellaSteps> make_device_steps(std::shared_ptr<Context> context, const Umbrellas& umbrellas, const UmbrellaTargets& targets) {
-    return std::make_unique<DeviceSteps>(std::move(context), umbrellas, targets);
+std::unique_ptr<UmbrellaSteps> make_device_steps(std::shared_ptr<Context> context, const Umbrellas& umbrellas, const UmbrellaTargets& targets, int group) {
+    return std::make_unique<DeviceSteps>(std::move(context), umbrellas, targets, group);
 }
 
 }  // namespace lcl

@@ -14,7 +14,7 @@ namespace {
 
 constexpr double fair_tolerance = 1e-8;  // of the residual, relative to its start: of the energy some 1e-16
 constexpr int most_fair_iterations = 1000;
-constexpr double runaway_growth = 10;  // of the residual, where the solvers give up too
+constexpr double runaway_growth = 10;       // of the residual, where the solvers give up too
 constexpr double unit_length_slack = 1e-5;  // what six decimals of a text leave
 
 /// 1 where the limit point is Q: everywhere but at vertices outside the subset, whose rows are identity rows although they are neither corners nor isolated.
@@ -35,8 +35,8 @@ void check_ratios(const SchemeOptions& scheme, const Topology& topology) {
         const double lambda = scheme.lambda_at(v);
         if ((lambda > 0 && lambda < 1) || topology.is_isolated(v)) continue;
         const std::string where = scheme.lambda_per_vertex.empty() ? "lambda" : "lambda of vertex " + std::to_string(v);
-        throw InvalidArgument(where + " is " + std::to_string(lambda) + ", and the refined mesh M^1 needs blend ratios above 0 and below 1: 0.2 to 0.5 look good",
-                              {{v}, {}});
+        throw InvalidArgument(
+            where + " is " + std::to_string(lambda) + ", and the refined mesh M^1 needs blend ratios above 0 and below 1: 0.2 to 0.5 look good", {{v}, {}});
     }
 }
 
@@ -78,7 +78,8 @@ public:
     std::vector<double> all() {
         std::vector<double> normals(3 * static_cast<std::size_t>(topology_.vertex_count), 0.0);
         if (options_.normals.empty()) return normals;
-        for (Index v = 0; v < topology_.vertex_count; ++v) take(v, &options_.normals[3 * static_cast<std::size_t>(v)], &normals[3 * static_cast<std::size_t>(v)]);
+        for (Index v = 0; v < topology_.vertex_count; ++v)
+            take(v, &options_.normals[3 * static_cast<std::size_t>(v)], &normals[3 * static_cast<std::size_t>(v)]);
         return normals;
     }
 

@@ -16,7 +16,8 @@ struct RepairFindings {
     std::vector<double> sides;      ///< (t1 x t2).N before, t1 and t2 of the mask: at most 0 where the surface looked to the other side; 1 without a normal
 };
 
-/// Holds X, in the order of the umbrellas. L: the rows of set_fairness; C X = d: the constraints of the targets, linear in X; C the projection on to C Y = 0, least norm, vertex by vertex.
+/// Holds X, in the order of the umbrellas. L: the rows of set_fairness; C X = d: the constraints of the targets, linear in X; C the projection on to C Y = 0,
+/// least norm, vertex by vertex.
 class UmbrellaSteps {
 public:
     virtual ~UmbrellaSteps() = default;
@@ -32,7 +33,7 @@ public:
     virtual void set_fairness(const FairRows& rows, double weight) = 0;
     /// |L X|^2.
     virtual double energy() = 0;
-    /// r = p = -C W L^T L X; gives |r|^2.
+    /// Once: r = p = -C W L^T L X; gives |r|^2.
     virtual double begin() = 0;
     /// q = C (p + W L^T L p); gives p.q.
     virtual double apply() = 0;
@@ -49,7 +50,8 @@ std::vector<double> in_vertex_order(const Umbrellas& umbrellas, const std::vecto
 /// In plain double on the host. Both references have to outlive the result.
 std::unique_ptr<UmbrellaSteps> make_host_steps(const Umbrellas& umbrellas, const UmbrellaTargets& targets);
 
-/// On a device with double precision. Sums are added up in a fixed order: the same bits in every run.
-std::unique_ptr<UmbrellaSteps> make_device_steps(std::shared_ptr<Context> context, const Umbrellas& umbrellas, const UmbrellaTargets& targets);
+/// On a device with double precision. Sums are added up in a fixed order: the same bits in every run. group: work-items that sum together; 0: what suits the
+/// device.
+std::unique_ptr<UmbrellaSteps> make_device_steps(std::shared_ptr<Context> context, const Umbrellas& umbrellas, const UmbrellaTargets& targets, int group = 0);
 
 }  // namespace lcl

@@ -45,8 +45,9 @@ struct UmbrellaTargets {
 struct FairRows {
     static constexpr std::uint32_t counts = 0x80000000u, is_counted = 0x40000000u, place = 0x3fffffffu;
     std::vector<std::uint32_t> offsets;  ///< vertex_count + 1
-    Array<std::uint32_t> neighbours;     ///< all edge neighbours of each vertex: a place, `counts` where the vertex's row counts it, `is_counted` where its row does
-    Array<Index> lengths;                ///< vertex_count: how many neighbours the row counts
+    Array<std::uint32_t>
+        neighbours;        ///< all edge neighbours of each vertex: a place, `counts` where the vertex's row counts it, `is_counted` where its row does
+    Array<Index> lengths;  ///< vertex_count: how many neighbours the row counts
 };
 
 /// Of M^1 with its topology and features. OutOfMemory above 2^30 vertices or 2^32 - 1 entries.

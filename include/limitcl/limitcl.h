@@ -568,12 +568,12 @@ LCL_API lcl_status lcl_refiner_apply(lcl_refiner refiner, const double* values, 
 
 typedef struct lcl_two_phase_options {
     uint32_t struct_size;
-    int32_t skip_normals;  /**< 1: normals that cannot be asked for are left out and counted, instead of refused */
-    const double* normals; /**< NULL, or vertex_count x 3: the normal that the surface is to have at each vertex, of any length above 0; 0 0 0: free */
-    const double* handles; /**< NULL, or one shape handle S > 0 a vertex; rules over the next two */
-    double convex_handle;  /**< S of convex vertices, 0: 1. A vertex is convex where the angle inside the solid is below 180 degrees at every edge */
-    double other_handle;   /**< S of the others, 0: 1 */
-    double fair;           /**< W, weight of fairness; 0: none. 1 takes most bumps out, 100 nearly all that the constraints allow */
+    int32_t skip_normals;        /**< 1: normals that cannot be asked for are left out and counted, instead of refused */
+    const double* normals;       /**< NULL, or vertex_count x 3: the normal that the surface is to have at each vertex, of any length above 0; 0 0 0: free */
+    const double* handles;       /**< NULL, or one shape handle S > 0 a vertex; rules over the next two */
+    double convex_handle;        /**< S of convex vertices, 0: 1. A vertex is convex where the angle inside the solid is below 180 degrees at every edge */
+    double other_handle;         /**< S of the others, 0: 1 */
+    double fair;                 /**< W, weight of fairness; 0: none. 1 takes most bumps out, 100 nearly all that the constraints allow */
     const char* const* channels; /**< NULL, or names of channel_count properties that are interpolated like x, y, z; the others are only refined */
     size_t channel_count;
 } lcl_two_phase_options;
@@ -582,18 +582,18 @@ typedef struct lcl_two_phase_options {
 
 typedef struct lcl_two_phase_report {
     uint32_t struct_size;
-    int32_t normal_count;      /**< normals that the surface has now */
-    int32_t skipped_normals;   /**< left out, with skip_normals */
-    int32_t scaled_normals;    /**< that were not of unit length */
-    int32_t wrong_side_count;  /**< normals on the other side of the surface than the one it had without them: it may fold there */
-    int32_t wrong_side[10];    /**< the first of these vertices */
-    int32_t convex_count;      /**< convex vertices; counted where convex_handle and other_handle differ */
+    int32_t normal_count;     /**< normals that the surface has now */
+    int32_t skipped_normals;  /**< left out, with skip_normals */
+    int32_t scaled_normals;   /**< that were not of unit length */
+    int32_t wrong_side_count; /**< normals on the other side of the surface than the one it had without them: it may fold there */
+    int32_t wrong_side[10];   /**< the first of these vertices */
+    int32_t convex_count;     /**< convex vertices; counted where convex_handle and other_handle differ */
     int32_t fair_iterations;
     int32_t fair_converged;
-    double largest_repair;     /**< largest distance from a vertex to its limit point before the repair, model units */
-    double max_error;          /**< the same in the result: rounding */
-    double energy[2];          /**< |L X|^2 before and after fairness, squares of model units; NaN without */
-    double seconds;            /**< of all but the solve */
+    double largest_repair; /**< largest distance from a vertex to its limit point before the repair, model units */
+    double max_error;      /**< the same in the result: rounding */
+    double energy[2];      /**< |L X|^2 before and after fairness, squares of model units; NaN without */
+    double seconds;        /**< of all but the solve */
 } lcl_two_phase_report;
 #define LCL_TWO_PHASE_REPORT_INIT \
     { (uint32_t)sizeof(lcl_two_phase_report), 0, 0, 0, 0, {0}, 0, 0, 0, 0.0, 0.0, {0.0, 0.0}, 0.0 }
@@ -614,14 +614,15 @@ typedef struct lcl_two_phase_report {
  * and properties; texture coordinates are dropped with a note. Vertices outside the subset of A are not constrained.
  * A: of `mesh` or one with its faces, Catmull-Clark with lambda above 0 and below 1 at every vertex (else LCL_ERROR_INVALID_ARGUMENT). `mesh` is not changed.
  * solve: as for lcl_interpolate, but warm_start; its progress is also called by fairness, whose residuals go in model units. LCL_OK also where the solve did
- * not converge, as solve_report tells, but did not run away either (to ten times its first residual); LCL_ERROR_SINGULAR, _INDEFINITE, _NOT_CONVERGED otherwise, and `refined` is only made
- * with keep_going. LCL_ERROR_BAD_INPUT, with the vertex, for a normal that cannot be asked for. Reports may be NULL. On devices without double precision steps
- * 2 to 5 run on the host. Linear time but for the solve; some 400 bytes a vertex of M^1 (of which a mesh of quads has nine times its own), three times that
- * with fairness. */
+ * not converge, as solve_report tells, but did not run away either (to ten times its first residual); LCL_ERROR_SINGULAR, _INDEFINITE, _NOT_CONVERGED
+ * otherwise, and `refined` is only made with keep_going. LCL_ERROR_BAD_INPUT, with the vertex, for a normal that cannot be asked for. Reports may be NULL. On
+ * devices without double precision steps 2 to 5 run on the host. Linear time but for the solve; some 250 bytes a vertex of M^1 (of which quads make nine of
+ * one), 50 more with fairness. */
 LCL_API lcl_status lcl_two_phase_mesh(lcl_operator A, lcl_mesh mesh, const lcl_solve_options* solve, const lcl_two_phase_options* options, lcl_mesh* refined,
                                       lcl_solve_report* solve_report, lcl_two_phase_report* report);
-/** For each vertex of the mesh that a two-phase mesh was made from, the vertex of M^1 at whose limit point it lies: its own number, isolated ones too. vertices:
- * as many as that mesh had, which is what `count` receives; NULL: count alone. LCL_ERROR_INVALID_ARGUMENT for a mesh that lcl_two_phase_mesh did not make. */
+/** For each vertex of the mesh that a two-phase mesh was made from, the vertex of M^1 at whose limit point it lies: its own number, isolated ones too.
+ * vertices: as many as that mesh had, which is what `count` receives; NULL: count alone. LCL_ERROR_INVALID_ARGUMENT for a mesh that lcl_two_phase_mesh did not
+ * make. */
 LCL_API lcl_status lcl_two_phase_get_map(lcl_mesh refined, int32_t* vertices, size_t* count);
 
 /* ---------------------------------------------------------------- operators of your own */

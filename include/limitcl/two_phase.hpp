@@ -10,12 +10,12 @@
 namespace limitcl {
 
 struct TwoPhaseOptions {
-    std::vector<double> normals;  ///< empty, or vertex_count x 3: the normal that the surface is to have, of any length above 0; 0 0 0: free
-    bool skip_normals = false;    ///< leave out and count normals that cannot be asked for, instead of refusing them
-    std::vector<double> handles;  ///< empty, or one shape handle S > 0 a vertex; rules over the next two
-    double convex_handle = 1;     ///< S of convex vertices
-    double other_handle = 1;      ///< S of the others
-    double fair = 0;              ///< W, weight of fairness; 0: none
+    std::vector<double> normals;        ///< empty, or vertex_count x 3: the normal that the surface is to have, of any length above 0; 0 0 0: free
+    bool skip_normals = false;          ///< leave out and count normals that cannot be asked for, instead of refusing them
+    std::vector<double> handles;        ///< empty, or one shape handle S > 0 a vertex; rules over the next two
+    double convex_handle = 1;           ///< S of convex vertices
+    double other_handle = 1;            ///< S of the others
+    double fair = 0;                    ///< W, weight of fairness; 0: none
     std::vector<std::string> channels;  ///< names of properties that are interpolated like x, y, z; the others are only refined
     SolveOptions solve;                 ///< of A_lambda P = Q; without warm_start
 };
