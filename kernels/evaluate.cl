@@ -332,15 +332,29 @@ __kernel void lcl_evaluate_irregular(const int begin, const int count, const int
     lcl_write(&jet, capacity, LCL_ORDER(packed[i]), out);
 }
 
-/// c = projection times control points, for every patch of a kind. count: patches; point_count: K. projection: M x K. control: count x K numbers. points: read. coefficients: written.
+/// c = projection times control points, for every patch of a kind; a work-item makes four coefficients of a patch, so that control points are fetched once for all four. count: patches;
+/// point_count: K. projection: M x K. control: count x K numbers. points: read. coefficients: written.
 __kernel void lcl_project(const int count, const int point_count, const __global lcl_kind *restrict kinds, const int which, const __global real *restrict projection, const __global int *restrict control,
                           const __global real4 *restrict points, __global real4 *restrict coefficients) {
-    const int p = get_global_id(0), j = get_global_id(1);
+    const int p = get_global_id(0), j = 4 * get_global_id(1);
     if (p >= count) return;
     const lcl_kind kind = kinds[which];
-    real4 sum = (real4)(0);
-    for (int i = 0; i < point_count; ++i) sum += projection[j * point_count + i] * points[control[(size_t)p * point_count + i]];
-    coefficients[kind.first_coefficient + (size_t)j * kind.stride + p] = sum;
+    const int last = kind.mode_count - 1;
+    const __global real *row0 = projection + j * point_count, *row1 = projection + min(j + 1, last) * point_count;
+    const __global real *row2 = projection + min(j + 2, last) * point_count, *row3 = projection + min(j + 3, last) * point_count;
+    real4 sum0 = (real4)(0), sum1 = (real4)(0), sum2 = (real4)(0), sum3 = (real4)(0);
+    for (int i = 0; i < point_count; ++i) {
+        const real4 point = points[control[(size_t)p * point_count + i]];
+        sum0 += row0[i] * point;
+        sum1 += row1[i] * point;
+        sum2 += row2[i] * point;
+        sum3 += row3[i] * point;
+    }
+    __global real4 *const out = coefficients + kind.first_coefficient + (size_t)j * kind.stride + p;
+    out[0] = sum0;
+    if (j + 1 <= last) out[kind.stride] = sum1;
+    if (j + 2 <= last) out[2 * (size_t)kind.stride] = sum2;
+    if (j + 3 <= last) out[3 * (size_t)kind.stride] = sum3;
 }
 
 /// The control points of a kind's patches as a matrix, K x count: gathered[i count + p], so that a dense product takes its place of the projection.

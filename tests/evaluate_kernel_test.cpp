@@ -16,7 +16,7 @@ using namespace lcl;
 namespace {
 
 struct Sizes {
-    std::size_t samples = 1500;
+    std::size_t samples = 300;
     double smallest = 1e-6;  // distance of places from the corners of faces
 };
 

@@ -192,8 +192,8 @@ void DeviceSurface::project() {
             dense_product(*context_, real_ == Real::full, M, K, 4 * count, kind.projection, gathered, coefficients_, 4 * kind.first_coefficient);
             context_->finish();  // `gathered` is in use
         } else {
-            launch(*context_, kernel("lcl_project"), lanes(count, M), kind.patch_count, points, kind_numbers_, kind.which, kind.projection, kind.control_buffer,
-                   points_, coefficients_);
+            launch(*context_, kernel("lcl_project"), lanes(count, (M + 3) / 4), kind.patch_count, points, kind_numbers_, kind.which, kind.projection,
+                   kind.control_buffer, points_, coefficients_);
         }
     }
 }
