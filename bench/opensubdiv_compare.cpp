@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // opensubdiv_compare M P [loop|catmull-clark]
-// Limit positions of the control mesh P by OpenSubdiv against the vertices of M, which `limitcl interpolate M -o P` was given. Sharp edges and vertices are
-// read from the tags of M's OBJ text here, not by the library. Prints one JSON object; lengths relative to the diagonal of M.
+// Limit positions of the control mesh P by OpenSubdiv against the vertices of M, which `limitcl interpolate M -o P` was given, and the limit surface of P
+// against OpenSubdiv's regular patches: points, first and second derivatives, both in double and both in float. Sharp edges and vertices are read from the tags
+// of M's OBJ text here, not by the library. Prints one JSON object; lengths relative to the diagonal of M.
+// opensubdiv_compare --end-caps
+// A table of how far OpenSubdiv's end caps are from the limit surface.
 #include "opensubdiv_limit.h"
-
-#include <limitcl/limitcl.hpp>
+#include "opensubdiv_patches.h"
 
 #include <cmath>
 #include <cstdio>
@@ -15,6 +17,7 @@
 namespace {
 
 constexpr double infinitely_sharp = 10.0;
+constexpr int most_faces = 40'000;  // whose patches are compared: OpenSubdiv takes seconds for the tables of larger meshes
 
 // "t NAME nInts/nFloats/nStrings values": the integers, then the floats.
 struct Tag {
@@ -81,20 +84,25 @@ void compare(const std::string& vertices_path, const std::string& control_path, 
         if (!(here <= error))  // also if it is not a number
             error = here, worst = v;
     }
-    std::printf("{\"scheme\": \"%s\", \"by_mask\": %d, \"by_refinement\": %d, \"left_out\": %d, \"error\": %.3e, \"vertex\": %zu}\n",
+    std::printf("{\"scheme\": \"%s\", \"by_mask\": %d, \"by_refinement\": %d, \"left_out\": %d, \"error\": %.3e, \"vertex\": %zu, ",
                 loop ? "loop" : "catmull-clark", count[0], count[1], count[2], diagonal > 0 ? error / diagonal : error, worst);
+    const bench::PatchErrors patches = M.face_count() <= most_faces ? bench::compare_patches(M, mesh, loop) : bench::PatchErrors();
+    std::printf("\"places\": %d, \"in_end_caps\": %d, \"double\": [%.3e, %.3e, %.3e], \"single\": [%.3e, %.3e, %.3e]}\n", patches.places, patches.irregular,
+                patches.points, patches.first, patches.second, patches.single_points, patches.single_first, patches.single_second);
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
+    const bool end_caps = argc == 2 && !std::strcmp(argv[1], "--end-caps");
     const std::string scheme = argc > 3 ? argv[3] : "";
-    if (argc < 3 || argc > 4 || (!scheme.empty() && scheme != "loop" && scheme != "catmull-clark")) {
-        std::fprintf(stderr, "usage: opensubdiv_compare M P [loop|catmull-clark]\n");
+    if (!end_caps && (argc < 3 || argc > 4 || (!scheme.empty() && scheme != "loop" && scheme != "catmull-clark"))) {
+        std::fprintf(stderr, "usage: opensubdiv_compare M P [loop|catmull-clark], or opensubdiv_compare --end-caps\n");
         return 2;
     }
     try {
-        compare(argv[1], argv[2], scheme);
+        if (end_caps) bench::print_end_caps();
+        else compare(argv[1], argv[2], scheme);
         return 0;
     } catch (const std::exception& error) {
         std::fprintf(stderr, "opensubdiv_compare: %s\n", error.what());

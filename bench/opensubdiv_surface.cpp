@@ -47,7 +47,8 @@ std::unique_ptr<Far::TopologyRefiner> make_refiner(const SharpMesh& mesh, bool i
 }
 
 template <class Real>
-OpenSubdivPatches<Real>::OpenSubdivPatches(const SharpMesh& mesh, const OpenSubdivOptions& options) : refiner_(make_refiner(mesh, options.is_loop)) {
+OpenSubdivPatches<Real>::OpenSubdivPatches(const SharpMesh& mesh, const OpenSubdivOptions& options)
+    : is_loop_(options.is_loop), refiner_(make_refiner(mesh, options.is_loop)) {
     Far::PatchTableFactory::Options patch_options(static_cast<unsigned>(options.isolation));
     patch_options.SetEndCapType(options.cap);
     patch_options.SetPatchPrecision<Real>();
@@ -90,6 +91,14 @@ Jet OpenSubdivPatches<Real>::evaluate(const std::vector<Real>& control, int face
     for (std::size_t q = 0; q < jet.size(); ++q)
         for (int i = 0; i < points.size(); ++i)
             for (std::size_t c = 0; c < 3; ++c) jet[q][c] += static_cast<double>(weights[q][i] * control[3 * static_cast<std::size_t>(points[i]) + c]);
+    // On sub-quads of other faces OpenSubdiv derives by parameters that run from 0 to 1/2.
+    if (table_->GetPatchParam(*patch).NonQuadRoot())
+        for (std::size_t q = 1; q < jet.size(); ++q)
+            for (double& x : jet[q]) x /= q < 3 ? 2 : 4;
+    // In triangles that are turned round, where parameters run backwards, its second derivatives have the wrong sign: differences of its first ones show it.
+    if (is_loop_ && table_->GetPatchParam(*patch).IsTriangleRotated())
+        for (std::size_t q = 3; q < jet.size(); ++q)
+            for (double& x : jet[q]) x = -x;
     return jet;
 }
 

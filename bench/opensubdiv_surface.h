@@ -41,10 +41,12 @@ public:
 
     /// Points of all levels and of the end caps, from those of the mesh (vertex_count x 3).
     std::vector<Real> control_points(const std::vector<double>& points) const;
-    /// By the weights of the patch's points. is_regular: whether the patch is none of the end caps.
+    /// By the weights of the patch's points, derivatives by parameters that run from 0 to 1 over the face or sub-quad. is_regular: whether the patch is none of
+    /// the end caps.
     Jet evaluate(const std::vector<Real>& control, int face_number, double u, double v, bool* is_regular) const;
 
 private:
+    bool is_loop_;
     std::unique_ptr<OpenSubdiv::Far::TopologyRefiner> refiner_;
     std::unique_ptr<OpenSubdiv::Far::PatchTable> table_;
     std::unique_ptr<OpenSubdiv::Far::PatchMap> map_;

@@ -92,8 +92,8 @@ public:
                 const double u = places.uv[2 * (first + i)], v = places.uv[2 * (first + i) + 1];
                 coordinates_[i] = Osd::PatchCoord(*patches_.find(places.faces[first + i], u, v), static_cast<float>(u), static_cast<float>(v));
             }
-            Evaluator::EvalPatches(control_.data(), layout, &values.points[3 * first], layout, &values.du[3 * first], layout, &values.dv[3 * first], layout, count,
-                                   coordinates_.data(), table_.GetPatchArrayBuffer(), table_.GetPatchIndexBuffer(), table_.GetPatchParamBuffer());
+            Evaluator::EvalPatches(control_.data(), layout, &values.points[3 * first], layout, &values.du[3 * first], layout, &values.dv[3 * first], layout,
+                                   count, coordinates_.data(), table_.GetPatchArrayBuffer(), table_.GetPatchIndexBuffer(), table_.GetPatchParamBuffer());
         }
     }
 

@@ -32,40 +32,38 @@ typedef LCL_JOIN(LCL_REAL, 2) real2;
 typedef LCL_JOIN(LCL_REAL, 4) real4;
 typedef LCL_JOIN(LCL_REAL, 16) real16;
 
-#define LCL_CONVERT16 LCL_JOIN(LCL_JOIN(convert_, LCL_REAL), 16)
-
 typedef struct {
     real4 at[LCL_JETS]; /* S, S_s, S_t, S_ss, S_st, S_tt */
 } lcl_jet;
 
 #if LCL_POINTS == 12
 
-__constant char lcl_box_spline[15 * 16] = {LCL_BOX_SPLINE};
+__constant real lcl_box_spline[15 * 16] = {LCL_BOX_SPLINE};
+#define LCL_BOX(q) vload16(q, lcl_box_spline)
 
-/// Sums up rows of the box spline: coefficients of the monomials, or of their derivatives.
-inline real16 lcl_box(const real *monomials) {
-    real16 sum = (real16)(0);
-    for (int q = 0; q < 15; ++q) sum += monomials[q] * LCL_CONVERT16(vload16(q, lcl_box_spline));
-    return sum / 12;
+/// Sum of weighted control points.
+inline real4 lcl_sum(real16 w, const real4 *p) {
+    const real4 first = w.s0 * p[0] + w.s1 * p[1] + w.s2 * p[2] + w.s3 * p[3], second = w.s4 * p[4] + w.s5 * p[5] + w.s6 * p[6] + w.s7 * p[7];
+    return (first + second + (w.s8 * p[8] + w.s9 * p[9] + w.sa * p[10] + w.sb * p[11])) / 12;
 }
 
-inline void lcl_weights(real s, real t, real16 *w) {
-    const real s2 = s * s, t2 = t * t, s3 = s2 * s, t3 = t2 * t;
-    const real value[15] = {1, s, t, s2, s * t, t2, s3, s2 * t, s * t2, t3, s2 * s2, s3 * t, s2 * t2, s * t3, t2 * t2};
-    w[0] = lcl_box(value);
+/// The jet of control points p at (s, t). Weights of all points together: polynomials in t whose coefficients a_k, of t^k, are polynomials in s.
+inline void lcl_evaluate(real s, real t, const real4 *p, lcl_jet *jet) {
+    const real16 a0 = LCL_BOX(0) + s * (LCL_BOX(1) + s * (LCL_BOX(3) + s * (LCL_BOX(6) + s * LCL_BOX(10))));
+    const real16 a1 = LCL_BOX(2) + s * (LCL_BOX(4) + s * (LCL_BOX(7) + s * LCL_BOX(11)));
+    const real16 a2 = LCL_BOX(5) + s * (LCL_BOX(8) + s * LCL_BOX(12)), a3 = LCL_BOX(9) + s * LCL_BOX(13), a4 = LCL_BOX(14);
+    jet->at[0] = lcl_sum(a0 + t * (a1 + t * (a2 + t * (a3 + t * a4))), p);
 #if LCL_JETS > 1
-    const real by_s[15] = {0, 1, 0, 2 * s, t, 0, 3 * s2, 2 * s * t, t2, 0, 4 * s3, 3 * s2 * t, 2 * s * t2, t3, 0};
-    const real by_t[15] = {0, 0, 1, 0, s, 2 * t, 0, s2, 2 * s * t, 3 * t2, 0, s3, 2 * s2 * t, 3 * s * t2, 4 * t3};
-    w[1] = lcl_box(by_s);
-    w[2] = lcl_box(by_t);
+    const real16 b0 = LCL_BOX(1) + s * (2 * LCL_BOX(3) + s * (3 * LCL_BOX(6) + 4 * s * LCL_BOX(10)));
+    const real16 b1 = LCL_BOX(4) + s * (2 * LCL_BOX(7) + 3 * s * LCL_BOX(11)), b2 = LCL_BOX(8) + 2 * s * LCL_BOX(12), b3 = LCL_BOX(13);
+    jet->at[1] = lcl_sum(b0 + t * (b1 + t * (b2 + t * b3)), p);
+    jet->at[2] = lcl_sum(a1 + t * (2 * a2 + t * (3 * a3 + 4 * t * a4)), p);
 #endif
 #if LCL_JETS > 3
-    const real by_ss[15] = {0, 0, 0, 2, 0, 0, 6 * s, 2 * t, 0, 0, 12 * s2, 6 * s * t, 2 * t2, 0, 0};
-    const real by_st[15] = {0, 0, 0, 0, 1, 0, 0, 2 * s, 2 * t, 0, 0, 3 * s2, 4 * s * t, 3 * t2, 0};
-    const real by_tt[15] = {0, 0, 0, 0, 0, 2, 0, 0, 2 * s, 6 * t, 0, 0, 2 * s2, 6 * s * t, 12 * t2};
-    w[3] = lcl_box(by_ss);
-    w[4] = lcl_box(by_st);
-    w[5] = lcl_box(by_tt);
+    const real16 c0 = 2 * LCL_BOX(3) + s * (6 * LCL_BOX(6) + 12 * s * LCL_BOX(10)), c1 = 2 * LCL_BOX(7) + 6 * s * LCL_BOX(11), c2 = 2 * LCL_BOX(12);
+    jet->at[3] = lcl_sum(c0 + t * (c1 + t * c2), p);
+    jet->at[4] = lcl_sum(b1 + t * (2 * b2 + 3 * t * b3), p);
+    jet->at[5] = lcl_sum(2 * a2 + t * (6 * a3 + 12 * t * a4), p);
 #endif
 }
 
@@ -82,47 +80,56 @@ inline real4 lcl_spline_1(real t) {
     return (real4)(-r * r, t * (3 * t - 4), r * (4 - 3 * r), t * t) / 2;
 }
 inline real4 lcl_spline_2(real t) { return (real4)(1 - t, 3 * t - 2, 1 - 3 * t, t); }
+#define LCL_POINTS_OF_ROW(p) ((real16)((p)[0], (p)[1], (p)[2], (p)[3]))
 #else
 inline real4 lcl_spline(real t) { return (real4)((1 - t) * (1 - t), 1 + 2 * t * (1 - t), t * t, 0) / 2; }
 inline real4 lcl_spline_1(real t) { return (real4)(t - 1, 1 - 2 * t, t, 0); }
 inline real4 lcl_spline_2(real t) { return (real4)(1, -2, 1, 0); }
+#define LCL_POINTS_OF_ROW(p) ((real16)((p)[0], (p)[1], (p)[2], (real4)(0)))
 #endif
 
-/// Products of weights along s and t.
-inline real16 lcl_product(real4 s, real4 t) {
+/// Rows of control points added up by weights along t.
+inline real16 lcl_along_t(real4 w, const real16 *row) {
 #if LCL_POINTS == 16
-    return (real16)(s * t.x, s * t.y, s * t.z, s * t.w);
+    return w.x * row[0] + w.y * row[1] + w.z * row[2] + w.w * row[3];
 #else
-    return (real16)(s.xyz * t.x, s.xyz * t.y, s.xyz * t.z, (real4)(0), (real)(0), (real)(0), (real)(0));
+    return w.x * row[0] + w.y * row[1] + w.z * row[2];
 #endif
 }
 
-inline void lcl_weights(real s, real t, real16 *w) {
-    const real4 s0 = lcl_spline(s), t0 = lcl_spline(t);
-    w[0] = lcl_product(s0, t0);
+/// The points of a row added up by weights along s.
+inline real4 lcl_along_s(real4 w, real16 row) {
+#if LCL_POINTS == 16
+    return w.x * row.s0123 + w.y * row.s4567 + w.z * row.s89ab + w.w * row.scdef;
+#else
+    return w.x * row.s0123 + w.y * row.s4567 + w.z * row.s89ab;
+#endif
+}
+
+/// The jet of control points p at (s, t): along t for all points of a row together, then along s.
+inline void lcl_evaluate(real s, real t, const real4 *p, lcl_jet *jet) {
+#if LCL_POINTS == 16
+    const real16 row[4] = {LCL_POINTS_OF_ROW(p), LCL_POINTS_OF_ROW(p + 4), LCL_POINTS_OF_ROW(p + 8), LCL_POINTS_OF_ROW(p + 12)};
+#else
+    const real16 row[3] = {LCL_POINTS_OF_ROW(p), LCL_POINTS_OF_ROW(p + 3), LCL_POINTS_OF_ROW(p + 6)};
+#endif
+    const real4 s0 = lcl_spline(s);
+    const real16 value = lcl_along_t(lcl_spline(t), row);
+    jet->at[0] = lcl_along_s(s0, value);
 #if LCL_JETS > 1
-    const real4 s1 = lcl_spline_1(s), t1 = lcl_spline_1(t);
-    w[1] = lcl_product(s1, t0);
-    w[2] = lcl_product(s0, t1);
+    const real4 s1 = lcl_spline_1(s);
+    const real16 by_t = lcl_along_t(lcl_spline_1(t), row);
+    jet->at[1] = lcl_along_s(s1, value);
+    jet->at[2] = lcl_along_s(s0, by_t);
 #endif
 #if LCL_JETS > 3
-    w[3] = lcl_product(lcl_spline_2(s), t0);
-    w[4] = lcl_product(s1, t1);
-    w[5] = lcl_product(s0, lcl_spline_2(t));
+    jet->at[3] = lcl_along_s(lcl_spline_2(s), value);
+    jet->at[4] = lcl_along_s(s1, by_t);
+    jet->at[5] = lcl_along_s(s0, lcl_along_t(lcl_spline_2(t), row));
 #endif
 }
 
 #endif
-
-/// The jet of control points p at (s, t).
-inline void lcl_evaluate(real s, real t, const real4 *p, lcl_jet *jet) {
-    real16 weights[LCL_JETS];
-    lcl_weights(s, t, weights);
-    const real *w = (const real *)weights;
-    for (int q = 0; q < LCL_JETS; ++q) jet->at[q] = (real4)(0);
-    for (int r = 0; r < LCL_POINTS; ++r)
-        for (int q = 0; q < LCL_JETS; ++q) jet->at[q] += w[16 * q + r] * p[r];
-}
 
 /// From derivatives by the patch's own (s, t) to those by (u, v): S_u = turn.x S_s + turn.y S_t, S_v = turn.z S_s + turn.w S_t.
 inline void lcl_turn(real4 turn, lcl_jet *jet) {
@@ -140,7 +147,11 @@ inline void lcl_turn(real4 turn, lcl_jet *jet) {
 }
 
 inline real lcl_length(real4 a) { return sqrt(a.x * a.x + a.y * a.y + a.z * a.z); }
-inline real4 lcl_unit(real4 a) { return a / lcl_length(a); }
+/// Also of vectors whose squares are too small for the type.
+inline real4 lcl_unit(real4 a) {
+    a /= fmax(fabs(a.x), fmax(fabs(a.y), fabs(a.z)));
+    return a / lcl_length(a);
+}
 
 /// Unit normal; NaN where the first derivatives are parallel or one of them vanishes, as far as their rounding lets one tell.
 inline real4 lcl_normal(real4 u, real4 v) {
@@ -214,6 +225,20 @@ __kernel void lcl_evaluate_regular(const int begin, const int count, const int c
     lcl_write(&jet, capacity, LCL_ORDER(packed[i]), out);
 }
 
+/// Samples in cells that have become regular patches: places: the number of the first of the cell's control points, which follow one another. The rest as above.
+__kernel void lcl_evaluate_cells(const int begin, const int count, const int capacity, const __global real2 *restrict parameters, const __global uint *restrict places,
+                                 const __global uint *restrict packed, const __global real4 *restrict turns, const __global real4 *restrict points, __global real *restrict out) {
+    if ((int)get_global_id(0) >= count) return;
+    const int i = begin + get_global_id(0);
+    const __global real4 *first = points + places[i];
+    real4 p[LCL_POINTS];
+    for (int r = 0; r < LCL_POINTS; ++r) p[r] = first[r];
+    lcl_jet jet;
+    lcl_evaluate(parameters[i].x, parameters[i].y, p, &jet);
+    lcl_turn(turns[LCL_TURN(packed[i])], &jet);
+    lcl_write(&jet, capacity, LCL_ORDER(packed[i]), out);
+}
+
 /// Control points of cell (m, k), without c_0.
 inline void lcl_cell(lcl_kind kind, int m, int k, uint column, const __global real *restrict weights, const __global real *restrict cells, const __global real4 *restrict coefficients,
                      real4 *p) {
@@ -256,9 +281,9 @@ inline real lcl_find_cell(real *s, real *t, int *k) {
     return -1;
 }
 
-/// At the extraordinary point: its limit, unit limit tangents, which are those of the deepest cells along the two sides, and no second derivatives.
+/// At the extraordinary point: its limit, limit tangents of length `unit`, which are those of the deepest cells along the two sides, and no second derivatives.
 inline void lcl_evaluate_tip(lcl_kind kind, uint column, const __global real *restrict weights, const __global real *restrict cells, const __global real4 *restrict coefficients, real4 turn,
-                             lcl_jet *jet) {
+                             real unit, lcl_jet *jet) {
 #if LCL_JETS > 1
     real4 p[LCL_POINTS];
     lcl_cell(kind, kind.depths - 1, 0, column, weights, cells, coefficients, p);
@@ -269,17 +294,17 @@ inline void lcl_evaluate_tip(lcl_kind kind, uint column, const __global real *re
     jet->at[2] = lcl_unit(jet->at[2]);
     jet->at[1] = along_s;
     lcl_turn(turn, jet);
-    jet->at[1] = lcl_unit(jet->at[1]);
-    jet->at[2] = lcl_unit(jet->at[2]);
+    jet->at[1] = unit * lcl_unit(jet->at[1]);
+    jet->at[2] = unit * lcl_unit(jet->at[2]);
     for (int q = 3; q < LCL_JETS; ++q) jet->at[q] = (real4)(NAN);
 #endif
     jet->at[0] = (real4)(0);
 }
 
-/// Samples in irregular patches of kind kinds[which]: begin .. begin + count - 1. places: the column of each sample's patch among those of the kind. weights: depths x M where weight_stride is M, else M.
+/// Samples in irregular patches of kind kinds[which]: begin .. begin + count - 1. unit: the length of a limit tangent at an extraordinary point. places: the column of each sample's patch among those of the kind. weights: depths x M where weight_stride is M, else M.
 /// cells: (depths x) 3 x M x LCL_POINTS. coefficients: c_j of all patches of all kinds. The rest as above.
-__kernel void lcl_evaluate_irregular(const int begin, const int count, const int capacity, const __global lcl_kind *restrict kinds, const int which, const __global real2 *restrict parameters,
-                                     const __global uint *restrict places, const __global uint *restrict packed, const __global real4 *restrict turns,
+__kernel void lcl_evaluate_irregular(const int begin, const int count, const int capacity, const real unit, const __global lcl_kind *restrict kinds, const int which,
+                                     const __global real2 *restrict parameters, const __global uint *restrict places, const __global uint *restrict packed, const __global real4 *restrict turns,
                                      const __global real *restrict weights, const __global real *restrict cells, const __global real4 *restrict coefficients, __global real *restrict out) {
     if ((int)get_global_id(0) >= count) return;
     const lcl_kind kind = kinds[which];
@@ -301,21 +326,35 @@ __kernel void lcl_evaluate_irregular(const int begin, const int count, const int
         lcl_evaluate(s, t, p, &jet);
         lcl_turn(scale * turn, &jet);
     } else {
-        lcl_evaluate_tip(kind, column, weights, cells, coefficients, turn, &jet);
+        lcl_evaluate_tip(kind, column, weights, cells, coefficients, turn, unit, &jet);
     }
     jet.at[0] = coefficients[kind.first_coefficient + column] + shrink * jet.at[0];
     lcl_write(&jet, capacity, LCL_ORDER(packed[i]), out);
 }
 
-/// c = projection times control points, for every patch of a kind. count: patches; point_count: K. projection: M x K. control: count x K numbers. points: read. coefficients: written.
+/// c = projection times control points, for every patch of a kind; a work-item makes four coefficients of a patch, so that control points are fetched once for all four. count: patches;
+/// point_count: K. projection: M x K. control: count x K numbers. points: read. coefficients: written.
 __kernel void lcl_project(const int count, const int point_count, const __global lcl_kind *restrict kinds, const int which, const __global real *restrict projection, const __global int *restrict control,
                           const __global real4 *restrict points, __global real4 *restrict coefficients) {
-    const int p = get_global_id(0), j = get_global_id(1);
+    const int p = get_global_id(0), j = 4 * get_global_id(1);
     if (p >= count) return;
     const lcl_kind kind = kinds[which];
-    real4 sum = (real4)(0);
-    for (int i = 0; i < point_count; ++i) sum += projection[j * point_count + i] * points[control[(size_t)p * point_count + i]];
-    coefficients[kind.first_coefficient + (size_t)j * kind.stride + p] = sum;
+    const int last = kind.mode_count - 1;
+    const __global real *row0 = projection + j * point_count, *row1 = projection + min(j + 1, last) * point_count;
+    const __global real *row2 = projection + min(j + 2, last) * point_count, *row3 = projection + min(j + 3, last) * point_count;
+    real4 sum0 = (real4)(0), sum1 = (real4)(0), sum2 = (real4)(0), sum3 = (real4)(0);
+    for (int i = 0; i < point_count; ++i) {
+        const real4 point = points[control[(size_t)p * point_count + i]];
+        sum0 += row0[i] * point;
+        sum1 += row1[i] * point;
+        sum2 += row2[i] * point;
+        sum3 += row3[i] * point;
+    }
+    __global real4 *const out = coefficients + kind.first_coefficient + (size_t)j * kind.stride + p;
+    out[0] = sum0;
+    if (j + 1 <= last) out[kind.stride] = sum1;
+    if (j + 2 <= last) out[2 * (size_t)kind.stride] = sum2;
+    if (j + 3 <= last) out[3 * (size_t)kind.stride] = sum3;
 }
 
 /// The control points of a kind's patches as a matrix, K x count: gathered[i count + p], so that a dense product takes its place of the projection.

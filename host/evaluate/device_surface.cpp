@@ -192,8 +192,8 @@ void DeviceSurface::project() {
             dense_product(*context_, real_ == Real::full, M, K, 4 * count, kind.projection, gathered, coefficients_, 4 * kind.first_coefficient);
             context_->finish();  // `gathered` is in use
         } else {
-            launch(*context_, kernel("lcl_project"), lanes(count, M), kind.patch_count, points, kind_numbers_, kind.which, kind.projection, kind.control_buffer,
-                   points_, coefficients_);
+            launch(*context_, kernel("lcl_project"), lanes(count, (M + 3) / 4), kind.patch_count, points, kind_numbers_, kind.which, kind.projection,
+                   kind.control_buffer, points_, coefficients_);
         }
     }
 }
@@ -208,26 +208,17 @@ void DeviceSurface::prepare_for(std::size_t sample_count) {
     const std::size_t cells = expanded_cells(), points = static_cast<std::size_t>(regular_point_count(table_.scheme));
     if (expanded_depths_ > 0 || cells == 0 || sample_count < samples_per_cell * cells) return;
     const std::size_t row_bytes = 4 * (real_ == Real::full ? sizeof(double) : sizeof(float));
-    const std::size_t control_points = static_cast<std::size_t>(table_.control_count()) + cells * points,
-                      control_numbers = table_.control.size() + cells * points;
-    const double bytes = static_cast<double>(control_points * row_bytes + control_numbers * sizeof(Index));
-    if (bytes > device_share * static_cast<double>(context_->device().memory_bytes) || control_points * row_bytes > context_->device().max_allocation_bytes ||
-        control_numbers > static_cast<std::size_t>(std::numeric_limits<Index>::max()))
+    const std::size_t bytes = (static_cast<std::size_t>(table_.control_count()) + cells * points) * row_bytes;
+    if (static_cast<double>(bytes) > device_share * static_cast<double>(context_->device().memory_bytes) || bytes > context_->device().max_allocation_bytes ||
+        bytes / row_bytes > std::numeric_limits<cl_uint>::max())
         return;
-    std::size_t next_point = static_cast<std::size_t>(table_.control_count()), next_control = table_.control.size();
-    Array<Index> control = table_.control;
-    control.resize(control_numbers);
+    std::size_t next = static_cast<std::size_t>(table_.control_count());
     for (Kind& kind : kinds_) {
-        kind.expanded_control = next_control;
-        kind.expanded_point = next_point;
-        const std::size_t count = static_cast<std::size_t>(3 * rings_expanded) * static_cast<std::size_t>(kind.patch_count) * points;
-        for (std::size_t i = 0; i < count; ++i) control[next_control + i] = static_cast<Index>(next_point + i);
-        next_control += count;
-        next_point += count;
+        kind.expanded_point = next;
+        next += static_cast<std::size_t>(3 * rings_expanded) * static_cast<std::size_t>(kind.patch_count) * points;
     }
-    context_->finish();  // the buffers that are replaced are no longer in use
-    control_ = Buffer(context_, control.size() * sizeof(Index), "numbers of control points", control.data());
-    points_ = Buffer(context_, control_points * row_bytes, "control points of patches");
+    context_->finish();  // the buffer that is replaced is no longer in use
+    points_ = Buffer(context_, bytes, "control points of patches");
     expanded_depths_ = rings_expanded;
     if (control_points_.empty()) return;
     upload_points();
@@ -258,7 +249,7 @@ struct DeviceSurface::Sorter {
     /// A place in the first rings of an irregular patch lies in a cell that is a regular patch now.
     Entry entry(const PatchPlace& found) const {
         const std::int32_t q = surface.table_.kind[found.patch];
-        Entry entry{static_cast<std::size_t>(q + 1), surface.place_of_patch_[found.patch], static_cast<cl_uint>(found.turn), found.s, found.t};
+        Entry entry{static_cast<std::size_t>(q - cells_group), surface.place_of_patch_[found.patch], static_cast<cl_uint>(found.turn), found.s, found.t};
         if (q < 0 || surface.expanded_depths_ == 0) return entry;
         const double size = is_triangle ? found.s + found.t : std::max(found.s, found.t);
         int m = 0;
@@ -282,7 +273,7 @@ struct DeviceSurface::Sorter {
         }
         const std::size_t cell =
             3 * (static_cast<std::size_t>(entry.place) * static_cast<std::size_t>(surface.expanded_depths_) + static_cast<std::size_t>(m)) + k;
-        return {0, static_cast<cl_uint>(surface.kinds_[q].expanded_control + cell * points), entry.turn + turn * turn_count, s, t};
+        return {0, static_cast<cl_uint>(surface.kinds_[q].expanded_point + cell * points), entry.turn + turn * turn_count, s, t};
     }
 };
 
@@ -290,7 +281,7 @@ template <class Number>
 void DeviceSurface::fill(const Places& places, SamplePiece& piece) {
     constexpr std::size_t smallest = 4096;
     const Sorter<Number> sorter{*this};
-    const std::size_t pieces = piece_count(piece.count, smallest), groups = kinds_.size() + 1;
+    const std::size_t pieces = piece_count(piece.count, smallest), groups = kinds_.size() + 2;
     std::vector<std::size_t> next(pieces * groups, 0);  // first how many, then where the next one goes
     found_.resize(piece.count);
     for_each_piece(piece.count, pieces, [&](std::size_t part, std::size_t begin, std::size_t end) {
@@ -302,7 +293,7 @@ void DeviceSurface::fill(const Places& places, SamplePiece& piece) {
     for (std::size_t group = 0; group < groups; ++group) {
         const std::size_t begin = sum;
         for (std::size_t part = 0; part < pieces; ++part) sum += std::exchange(next[part * groups + group], sum);
-        if (sum > begin) piece.groups.push_back({static_cast<std::int32_t>(group) - 1, static_cast<cl_int>(begin), static_cast<cl_int>(sum - begin)});
+        if (sum > begin) piece.groups.push_back({static_cast<std::int32_t>(group) + cells_group, static_cast<cl_int>(begin), static_cast<cl_int>(sum - begin)});
     }
     const char* const doing = "uploading samples";
     Mapping parameters = context_->map(piece.parameters, 0, 2 * piece.count * sizeof(Number), true, context_->marker(), doing),
@@ -346,13 +337,20 @@ void DeviceSurface::launch_groups(const SamplePiece& piece, unsigned want) {
     const cl_int capacity = static_cast<cl_int>(piece.count);
     for (const SampleGroup& group : piece.groups) {
         const LaunchSize size = lanes(static_cast<std::size_t>(group.count));
-        if (group.kind < 0) {
+        if (group.kind == cells_group) {
+            launch(*context_, kernel("lcl_evaluate_cells", want), size, group.begin, group.count, capacity, piece.parameters, piece.places, piece.packed,
+                   turns_, points_, out_);
+        } else if (group.kind == regular_group) {
             launch(*context_, kernel("lcl_evaluate_regular", want), size, group.begin, group.count, capacity, piece.parameters, piece.places, piece.packed,
                    turns_, control_, points_, out_);
         } else {
             const Kind& kind = kinds_[group.kind];
-            launch(*context_, kernel("lcl_evaluate_irregular", want), size, group.begin, group.count, capacity, kind_numbers_, kind.which, piece.parameters,
-                   piece.places, piece.packed, turns_, kind.weights, kind.cells, coefficients_, out_);
+            const auto launch_with = [&](auto unit) {  // what read() makes a length of 1
+                launch(*context_, kernel("lcl_evaluate_irregular", want), size, group.begin, group.count, capacity, unit, kind_numbers_, kind.which,
+                       piece.parameters, piece.places, piece.packed, turns_, kind.weights, kind.cells, coefficients_, out_);
+            };
+            if (real_ == Real::full) launch_with(cl_double{1 / scale_});
+            else launch_with(static_cast<cl_float>(1 / scale_));
         }
     }
 }

@@ -14,9 +14,11 @@
 
 namespace lcl {
 
-/// Samples of one launch: those in regular patches, or in irregular ones of one kind.
+constexpr std::int32_t regular_group = -1, cells_group = -2;
+
+/// Samples of one launch: those in irregular patches of one kind, in regular ones, or in cells that have become regular patches.
 struct SampleGroup {
-    std::int32_t kind = -1;
+    std::int32_t kind = regular_group;
     cl_int begin = 0, count = 0;
 };
 
@@ -60,7 +62,7 @@ private:
         std::size_t first_coefficient = 0;
         std::vector<Index> control;  // patch_count x K
         Buffer control_buffer, projection, weights, cells;
-        std::size_t expanded_control = 0, expanded_point = 0;
+        std::size_t expanded_point = 0;
     };
     template <class Number>
     struct Sorter;
