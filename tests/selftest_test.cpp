@@ -39,7 +39,8 @@ TEST_CASE("every kernel agrees with the plain host operator on every device", "[
                                    "lcl_relax_phase",     "lcl_relax_rows",    "lcl_cg_apply",         "lcl_cg_update",    "lcl_cg_direction",
                                    "lcl_import_points",   "lcl_export_points", "lcl_gather_rows",      "lcl_scatter_rows", "lcl_noise",
                                    "lcl_series",          "lcl_series_sums",   "lcl_filter",           "lcl_morph",        "lcl_morph_blend",
-                                   "lcl_morph_difference"}) {
+                                   "lcl_morph_difference", "lcl_umbrella_repair", "lcl_umbrella_scale", "lcl_fair_laplacian", "lcl_fair_apply", "lcl_fair_update",
+                                   "lcl_fair_turn"}) {
             INFO(kernel);
             CHECK(results.kernels.count(kernel) == 1);
         }

@@ -61,6 +61,8 @@ struct lcl_mesh_s : lcl::Counted {
     lcl::FeatureOptions feature_options;  // the file's tags and what callers added; boundary resolved by boundary_rule()
     lcl_boundary boundary = LCL_BOUNDARY_DEFAULT;
     std::vector<lcl::SurfaceLocation> locations;  // of a refined mesh
+    lcl::Index two_phase_vertices = -1;           // of a two-phase mesh: how many vertices the mesh had that it was made from
+    bool was_read_with_normals = false;
     std::map<lcl_note, std::vector<std::string>> notes;
 
     /// Topology and features of a sound mesh, built once; BadInput with the reason if it is not sound, or if the file had a tag that is refused.
@@ -127,6 +129,12 @@ std::unique_ptr<LimitSystem> make_system(lcl_context_s& context, lcl_mesh_s& mes
 std::unique_ptr<lcl_mesh_s> make_refined_mesh(const lcl_mesh_s& mesh, Refinement&& refined, int levels);
 /// Values of integer types, of which refinement makes fractions, are rounded.
 void round_integers(std::vector<VertexProperty>& properties);
+
+/// Checked options of a solve, but for warm_start.
+SolveOptions solve_options(const lcl_solve_options& options);
+
+/// Fills the report (which may be null), but neither asks whether the solve went well nor keeps a sentence.
+void give_report(lcl_solve_report* report, const SolveReport& inner);
 
 /// Fills the report (which may be null) and gives the status of a solve, whose sentence becomes the thread's last error where it failed.
 lcl_status conclude(const SolveReport& inner, const lcl_solve_options& options, lcl_solve_report* report);

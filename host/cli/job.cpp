@@ -50,12 +50,15 @@ std::vector<char> standard_input() {
 
 Mesh read_mesh(Job& job, const std::string& path) {
     const Phase phase(job, &Seconds::read, "reading " + shown_name(path));
+    const bool with_normals = job.options.normals == "mesh";
     lcl_mesh mesh = nullptr;
     if (path != "-") {
-        check(lcl_mesh_read(path.c_str(), LCL_FORMAT_BY_ENDING, &mesh));
+        const auto read = with_normals ? lcl_mesh_read_with_normals : lcl_mesh_read;
+        check(read(path.c_str(), LCL_FORMAT_BY_ENDING, &mesh));
     } else {
         const std::vector<char> bytes = standard_input();
-        check(lcl_mesh_read_memory(bytes.data(), bytes.size(), job.options.format, "standard input", &mesh));
+        const auto read = with_normals ? lcl_mesh_read_memory_with_normals : lcl_mesh_read_memory;
+        check(read(bytes.data(), bytes.size(), job.options.format, "standard input", &mesh));
     }
     return Mesh(mesh);
 }

@@ -49,6 +49,26 @@ void check_report_name(const Options& options) {
     if (replaces) fail(exit_usage, "the report would replace another output, '" + options.report + "': give --report another name");
 }
 
+/// What makes the output the refined mesh of the two-phase scheme, or nothing.
+const char* refined_option(const Options& options) {
+    for (const char* flag : {"--refined", "--normals", "--handles", "--fair"})
+        if (options.has(flag)) return flag;
+    return nullptr;
+}
+
+void check_interpolate(const Options& options) {
+    const char* const flag = refined_option(options);
+    if (flag == nullptr && !options.map_file.empty())
+        fail(exit_usage, "--map names the vertices of the refined mesh of the two-phase scheme: add --refined and --lambda, or leave it out");
+    if (flag == nullptr) return;
+    const bool has_ratio = options.has("--lambda") && (!options.lambda_file.empty() || (options.lambda > 0.0 && options.lambda < 1.0));
+    if (!has_ratio) fail(exit_usage, std::string(flag) + " is of the two-phase scheme and needs --lambda L with a blend ratio above 0 and below 1, such as 0.33");
+    lcl_format format = options.format;
+    if (options.output != "-") lcl_format_of_path(options.output.c_str(), &format);
+    if (format == LCL_FORMAT_STL)
+        fail(exit_usage, std::string("STL holds triangles only, and with ") + flag + " the output is a refined mesh of quads: write to .obj, .off, .ply or .om");
+}
+
 void check_refine(const Options& options) {
     if (options.levels == 0 && !options.limit) fail(exit_usage, "--levels 0 changes nothing without --limit: add it, or give a level from 1");
 }
@@ -105,6 +125,7 @@ void apply_rules(Options& options) {
     check_endings(options);
     check_report_name(options);
     if (!options.map_file.empty() && options.map_file == options.output) fail(exit_usage, "--map would replace the mesh: give it another name");
+    if (options.command == "interpolate") check_interpolate(options);
     if (options.command == "refine") check_refine(options);
     if (options.command == "expand") check_expand(options);
     if (options.command == "spectrum") check_spectrum(options);

@@ -2,6 +2,7 @@
 // The command line as a struct. Only options.cpp sees the parser's library.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <set>
@@ -51,7 +52,12 @@ struct Options {
     // interpolate
     lcl_solver solver = LCL_SOLVER_AUTO;
     std::string subset_file;
-    int sweeps = 0;  ///< 0: until the tolerance is met
+    int sweeps = 0;                              ///< 0: until the tolerance is met
+    std::string normals;                         ///< a CSV, "mesh", or empty: none
+    std::array<double, 2> handles = {1.0, 1.0};  ///< of convex and other vertices
+    std::string handles_file;                    ///< not empty: one a vertex, rules over handles
+    bool refined = false;
+    double fair = 0.0;  ///< 0: none
 
     // refine
     int levels = 1;

@@ -2,6 +2,7 @@
 // One patch for each face of the refined mesh, that is for each corner of the quad mesh that the last refinement starts from: patch h is the child at half-edge
 // h, from the vertex V = origin(h). The refined mesh needs no topology of its own: its points are the vertices, edges and faces of the quad mesh. Of a patch's
 // four vertices - V, the point of edge h, of the face, of the edge before h - only V can be irregular.
+#include <algorithm>
 #include <charconv>
 #include <limits>
 #include <map>
@@ -289,10 +290,11 @@ struct Quarter {
     double s, t;
 };
 
+/// Without branches, which random places would mispredict.
 Quarter quarter_of(double u, double v) {
-    const int right = u > 0.5, upper = v > 0.5, corner = (right ^ upper) | upper << 1;
-    const double a = 2 * (right ? 1 - u : u), b = 2 * (upper ? 1 - v : v);
-    return corner & 1 ? Quarter{corner, b, a} : Quarter{corner, a, b};
+    const int right = u > 0.5, upper = v > 0.5, odd = right ^ upper;
+    const std::array<double, 2> along{2 * std::min(u, 1 - u), 2 * std::min(v, 1 - v)};
+    return {odd | upper << 1, along[odd], along[odd ^ 1]};
 }
 
 /// "6 corners (0 to 5)", "1 face (0)".

@@ -215,7 +215,7 @@ void DeviceSurface::prepare_for(std::size_t sample_count) {
         control_numbers > static_cast<std::size_t>(std::numeric_limits<Index>::max()))
         return;
     std::size_t next_point = static_cast<std::size_t>(table_.control_count()), next_control = table_.control.size();
-    std::vector<Index> control = table_.control;
+    Array<Index> control = table_.control;
     control.resize(control_numbers);
     for (Kind& kind : kinds_) {
         kind.expanded_control = next_control;

@@ -142,7 +142,7 @@ void add_squares_beyond(const Topology& topology, const DooSabinLayout& layout, 
 /// The vertex of the once refined mesh whose square lies beyond edges at an old corner, or the corner's own; -1 where there is none.
 Index square_at(const PatchTable& table, Index corner, Square square) {
     if (square == Square::corner) return corner;
-    return table.squares_beyond.empty() ? -1 : table.squares_beyond[3 * static_cast<std::size_t>(corner) + static_cast<std::size_t>(square) - 1];
+    return table.square_beyond(corner, static_cast<int>(square) - 1);
 }
 
 Square square_of(double u, double v) { return u < 0 ? v < 0 ? Square::kept : Square::beyond_previous : v < 0 ? Square::beyond_next : Square::corner; }

@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "host/array.h"
 #include "host/evaluate/patch_kind.h"
 #include "host/mesh/features.h"
 #include "host/mesh/topology.h"
@@ -40,7 +41,7 @@ struct PatchTable {
     Index point_count = 0;           ///< points of the mesh
     std::vector<Stencils> steps;     ///< the explicit refinements, one after the other: points of the refined mesh
     Stencils ghosts;                 ///< rows over the points of the refined mesh: points across sharp edges, which follow them as control points
-    std::vector<Index> control;      ///< numbers of the control points of every patch, one patch after the other
+    Array<Index> control;            ///< numbers of the control points of every patch, one patch after the other
     std::vector<Index> patch_begin;  ///< patch_count + 1, in `control`
     std::vector<std::int32_t> kind;  ///< patch_count: -1 regular, else of `kinds`
     std::vector<PatchKind> kinds;    ///< each is used
@@ -49,8 +50,11 @@ struct PatchTable {
     int levels = 0;                       ///< explicit refinements
     std::vector<Index> face_begin;        ///< face_count + 1: first corner of each face of the mesh
     std::vector<Index> patch_of_quarter;  ///< Doo-Sabin: patches of the quarters of every vertex of the once refined mesh: towards (1,1), (1,0), (0,0), (0,1)
-    std::vector<Index> squares_beyond;    ///< Doo-Sabin with sharp edges, three per corner: vertices of the once refined mesh whose squares have v < 0, u < 0, both
+    std::vector<Index> squares_beyond;    ///< Doo-Sabin with sharp edges: three per corner, as square_beyond() gives them
 
+    /// Doo-Sabin: the vertex of the once refined mesh whose square lies at a corner of the mesh beyond v = 0 (side 0), u = 0 (1) or both (2), -1 if there is
+    /// none.
+    Index square_beyond(Index corner, int side) const { return squares_beyond.empty() ? -1 : squares_beyond[3 * static_cast<std::size_t>(corner) + side]; }
     Index patch_count() const { return static_cast<Index>(patch_begin.size()) - 1; }
     Index refined_count() const { return steps.empty() ? point_count : static_cast<Index>(steps.back().offsets.size() - 1); }
     Index control_count() const { return refined_count() + static_cast<Index>(ghosts.offsets.size() - 1); }

@@ -43,6 +43,12 @@ struct Stencils {
     std::vector<double> weights;
 };
 
+/// Channels of the vertices that are refined beside their positions: vertex_count x count.
+struct FurtherChannels {
+    int count = 0;
+    std::vector<double> values;
+};
+
 /// One refinement step.
 struct Refinement {
     PolygonMesh mesh;   ///< refined faces and positions

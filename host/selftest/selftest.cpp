@@ -7,7 +7,9 @@
 #include "host/apply/noise.h"
 #include "host/apply/row_transfer.h"
 #include "host/apply/transfer.h"
+#include "host/selftest/surface_check.h"
 #include "host/solve/limit_system.h"
+#include "host/two_phase/umbrella_steps.h"
 
 namespace lcl {
 namespace {
@@ -346,6 +348,76 @@ bool check_noise(const std::shared_ptr<Context>& context, Real real, const std::
     return result.passed();
 }
 
+/// Limit points, normals and handles that are no mesh's own, on every kind of umbrella; one vertex in seven is free.
+UmbrellaTargets rough_targets(const Umbrellas& umbrellas) {
+    UmbrellaTargets targets;
+    targets.points = values_for(umbrellas.count, 3, 1);
+    targets.normals = values_for(umbrellas.count, 3, 2);
+    for (Index u = 0; u < umbrellas.count; ++u) {
+        double* const normal = &targets.normals[3 * static_cast<std::size_t>(u)];
+        const double length = std::sqrt(normal[0] * normal[0] + normal[1] * normal[1] + normal[2] * normal[2]);
+        const bool is_free = u % 7 == 0 || !umbrellas.masks[umbrellas.mask_of[u]].has_tangents;
+        for (int c = 0; c < 3; ++c) normal[c] = is_free ? 0 : normal[c] / length;
+        targets.constrained.push_back(u % 7 != 0);
+        targets.handles.push_back(0.5 + u % 3);
+    }
+    return targets;
+}
+
+/// What every kernel of the two-phase scheme gives one after the other. Numbers are of size 1, or are made so.
+std::vector<std::pair<const char*, std::vector<double>>> two_phase_results(UmbrellaSteps& steps, const PolygonMesh& refined, const FairRows& rows) {
+    std::vector<std::pair<const char*, std::vector<double>>> results;
+    std::vector<double> points;
+    const double count = refined.vertex_count;
+    steps.upload(refined.positions);
+    const RepairFindings found = steps.repair();
+    steps.download(points);
+    results.push_back({"lcl_umbrella_repair", points});
+    results.push_back({"lcl_umbrella_repair (distances)", found.distances});
+    results.push_back({"lcl_umbrella_repair (sides)", found.sides});
+    steps.set_fairness(rows, 2);
+    results.push_back({"lcl_fair_laplacian", {steps.energy() / count}});
+    double square = steps.begin();
+    std::vector<double> products, squares{square / count};
+    for (int step = 0; step < 3; ++step) {
+        products.push_back(steps.apply() / count);
+        const double before = square;
+        square = steps.update(before / (products.back() * count));
+        squares.push_back(square / count);
+        steps.turn(square / before);
+    }
+    results.push_back({"lcl_fair_apply", products});
+    results.push_back({"lcl_fair_update", squares});
+    steps.download(points);
+    results.push_back({"lcl_fair_turn", points});
+    steps.scale();
+    steps.download(points);
+    results.push_back({"lcl_umbrella_scale", points});
+    return results;
+}
+
+/// A row sums some twenty products of numbers of size 1 by weights up to 10; three steps of conjugate gradients carry that on.
+bool check_two_phase(const std::shared_ptr<Context>& context, const std::function<void(const SelftestResult&)>& report) {
+    const Case c = cases()[1];
+    SchemeOptions scheme;
+    scheme.lambda = 0.3;
+    const Topology topology = build_topology(c.mesh);
+    const Umbrellas umbrellas = build_umbrellas(topology, find_features(c.mesh, topology, c.features));
+    const UmbrellaTargets targets = rough_targets(umbrellas);
+    const Refinement refined = refine(c.mesh, c.features, scheme, 1);
+    const Topology fine = build_topology(refined.mesh);
+    const FairRows rows = build_fair_rows(fine, find_features(refined.mesh, fine, refined.features));
+    const auto found = two_phase_results(*make_device_steps(context, umbrellas, targets), refined.mesh, rows);
+    const auto expected = two_phase_results(*make_host_steps(umbrellas, targets), refined.mesh, rows);
+    bool passed = true;
+    for (std::size_t i = 0; i < found.size(); ++i) {
+        const SelftestResult result{found[i].first, c.name + ", double", largest_difference(found[i].second, expected[i].second), std::ldexp(1, -40)};
+        report(result);
+        passed = result.passed() && passed;
+    }
+    return passed;
+}
+
 }  // namespace
 
 bool run_selftest(const std::shared_ptr<Context>& context, const std::function<void(const SelftestResult&)>& report) {
@@ -353,10 +425,14 @@ bool run_selftest(const std::shared_ptr<Context>& context, const std::function<v
     for (const Case& c : cases())
         for (const Real real : {Real::single, Real::wide, Real::full}) {
             if (real == Real::full && !context->device().has_double) continue;
+            if (real != Real::wide) passed = check_surface(context, c.name, c.mesh, c.features, c.scheme, real, report) && passed;
             for (const int channels : {1, 2, 3, 9}) passed = Selftest(context, c, channels, real, report).run() && passed;
         }
     passed = check_noise(context, Real::single, report) && passed;
-    if (context->device().has_double) passed = check_noise(context, Real::full, report) && passed;
+    if (context->device().has_double) {
+        passed = check_noise(context, Real::full, report) && passed;
+        passed = check_two_phase(context, report) && passed;
+    }
     return passed;
 }
 

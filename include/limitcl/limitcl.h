@@ -181,6 +181,10 @@ LCL_API lcl_status lcl_mesh_create(const lcl_mesh_data* data, lcl_mesh* mesh);
 LCL_API lcl_status lcl_mesh_read(const char* path, lcl_format format, lcl_mesh* mesh);
 /** The same from bytes in memory; `name` stands in messages. */
 LCL_API lcl_status lcl_mesh_read_memory(const void* bytes, size_t size, lcl_format format, const char* name, lcl_mesh* mesh);
+/** The same two, and the normals of the vertices that the file holds are kept for lcl_mesh_get_normals: OBJ vn (the mean of those of a vertex's corners), PLY
+ * nx ny nz, OFF with N. Other formats have none. Reading them takes time, so lcl_mesh_read does not. */
+LCL_API lcl_status lcl_mesh_read_with_normals(const char* path, lcl_format format, lcl_mesh* mesh);
+LCL_API lcl_status lcl_mesh_read_memory_with_normals(const void* bytes, size_t size, lcl_format format, const char* name, lcl_mesh* mesh);
 /** Writes completely or not at all, a sound mesh. Counts as a change of the mesh: what the format cannot hold is added to its notes of kind LCL_NOTE_WARNING.
  * path "-" is standard output and needs a format. */
 LCL_API lcl_status lcl_mesh_write(lcl_mesh mesh, const char* path, lcl_format format);
@@ -201,6 +205,9 @@ LCL_API lcl_status lcl_mesh_get_points(lcl_mesh mesh, double* points, size_t str
 LCL_API lcl_status lcl_mesh_set_points(lcl_mesh mesh, const double* points, size_t stride);
 /** Unit normals that a writer puts beside the points (OBJ vn, PLY nx ny nz, OFF NOFF); NULL: none. vertex_count x 3. */
 LCL_API lcl_status lcl_mesh_set_normals(lcl_mesh mesh, const double* normals);
+/** Normals as the file that the mesh was read from holds them, of any length: vertex_count x 3, NaN where the file gives a vertex none. LCL_ERROR_BAD_INPUT
+ * where it holds no normals at all; LCL_ERROR_INVALID_ARGUMENT for a mesh that was not read with them, or whose points were changed since. */
+LCL_API lcl_status lcl_mesh_get_normals(lcl_mesh mesh, double* normals);
 
 /** Sharp features, beside the boundary. */
 typedef LCL_ENUM(lcl_boundary){
@@ -497,6 +504,66 @@ LCL_API lcl_status lcl_mesh_refine(lcl_mesh mesh, const lcl_scheme_options* sche
 /** Where each vertex of a refined mesh lies on the original's surface, in the parameters of `limitcl evaluate`: faces (-1: isolated) and corners: vertex_count;
  * uv: vertex_count x 2. */
 LCL_API lcl_status lcl_mesh_get_locations(lcl_mesh refined, int32_t* faces, int32_t* corners, double* uv);
+
+/* ---------------------------------------------------------------- the two-phase scheme: tangent planes, shape handles, fairness */
+
+typedef struct lcl_two_phase_options {
+    uint32_t struct_size;
+    int32_t skip_normals;  /**< 1: normals that cannot be asked for are left out and counted, instead of refused */
+    const double* normals; /**< NULL, or vertex_count x 3: the normal that the surface is to have at each vertex, of any length above 0; 0 0 0: free */
+    const double* handles; /**< NULL, or one shape handle S > 0 a vertex; rules over the next two */
+    double convex_handle;  /**< S of convex vertices, 0: 1. A vertex is convex where the angle inside the solid is below 180 degrees at every edge */
+    double other_handle;   /**< S of the others, 0: 1 */
+    double fair;           /**< W, weight of fairness; 0: none. 1 takes most bumps out, 100 nearly all that the constraints allow */
+    const char* const* channels; /**< NULL, or names of channel_count properties that are interpolated like x, y, z; the others are only refined */
+    size_t channel_count;
+} lcl_two_phase_options;
+#define LCL_TWO_PHASE_OPTIONS_INIT \
+    { (uint32_t)sizeof(lcl_two_phase_options), 0, NULL, NULL, 0.0, 0.0, 0.0, NULL, 0 }
+
+typedef struct lcl_two_phase_report {
+    uint32_t struct_size;
+    int32_t normal_count;      /**< normals that the surface has now */
+    int32_t skipped_normals;   /**< left out, with skip_normals */
+    int32_t scaled_normals;    /**< that were not of unit length */
+    int32_t wrong_side_count;  /**< normals on the other side of the surface than the one it had without them: it may fold there */
+    int32_t wrong_side[10];    /**< the first of these vertices */
+    int32_t convex_count;      /**< convex vertices; counted where convex_handle and other_handle differ */
+    int32_t fair_iterations;
+    int32_t fair_converged;
+    double largest_repair;     /**< largest distance from a vertex to its limit point before the repair, model units */
+    double max_error;          /**< the same in the result: rounding */
+    double energy[2];          /**< |L X|^2 before and after fairness, squares of model units; NaN without */
+    double seconds;            /**< of all but the solve */
+} lcl_two_phase_report;
+#define LCL_TWO_PHASE_REPORT_INIT \
+    { (uint32_t)sizeof(lcl_two_phase_report), 0, 0, 0, 0, {0}, 0, 0, 0, 0.0, 0.0, {0.0, 0.0}, 0.0 }
+
+/** Refined control mesh M^1 whose Catmull-Clark surface passes through the vertices Q of `mesh` exactly, however far the solve went (two-phase paper):
+ * 1. A_lambda P = Q is solved, and M^1 made of P by the first refinement with lambda (lcl_mesh_refine). In it every vertex of `mesh` has an umbrella, its edge
+ *    and face points, that no other vertex has a part in. All that follows is done umbrella by umbrella.
+ * 2. Position repair, eq. 7: the least change that brings the limit point to Q.
+ * 3. Tangent planes, eq. 15: the least change that makes the plane at the limit point orthogonal to the normal N. (Source slip: the scanned text gives its two
+ *    tangents the same weights.) At boundary vertices by their own masks. A normal can be asked for at vertices without a sharp edge and three faces or more,
+ *    and on boundary curves with 2 to 4 faces; not at corners, on creases and their ends, and outside the subset. Where (t1 x t2).N <= 0 before, the surface
+ *    has to turn over: wrong_side tells.
+ * 4. Fairness: X that minimises |X - X_0|^2 + W |L X|^2 under the same constraints, X_0 the repaired M^1 and L its umbrella Laplacian (mean of the edge
+ *    neighbours minus the vertex; on boundary and crease curves, of those along the curve; no row at corners). Some 20 to 100 iterations.
+ * 5. Shape handles: X -> Q + S (X - Q) in every umbrella: S < 1 sharpens, a large S makes a flat spot. Limit points and tangent planes stay. They come last,
+ *    so that S is what it says on a fair surface; energy[1] is that before them.
+ * The result is read with alpha 0 and lambda 0. Vertex i of `mesh` is vertex i of M^1, whose order lcl_mesh_refine has. It carries refined creases and corners,
+ * and properties; texture coordinates are dropped with a note. Vertices outside the subset of A are not constrained.
+ * A: of `mesh` or one with its faces, Catmull-Clark with lambda above 0 and below 1 at every vertex (else LCL_ERROR_INVALID_ARGUMENT). `mesh` is not changed.
+ * solve: as for lcl_interpolate, but warm_start; its progress is also called by fairness, whose residuals go in model units. LCL_OK also where the solve did
+ * not converge, as solve_report tells, but did not run away either (to ten times its first residual); LCL_ERROR_SINGULAR, _INDEFINITE, _NOT_CONVERGED otherwise, and `refined` is only made
+ * with keep_going. LCL_ERROR_BAD_INPUT, with the vertex, for a normal that cannot be asked for. Reports may be NULL. On devices without double precision steps
+ * 2 to 5 run on the host. Linear time but for the solve; some 400 bytes a vertex of M^1 (of which a mesh of quads has nine times its own), three times that
+ * with fairness. */
+LCL_API lcl_status lcl_two_phase_mesh(lcl_operator A, lcl_mesh mesh, const lcl_solve_options* solve, const lcl_two_phase_options* options, lcl_mesh* refined,
+                                      lcl_solve_report* solve_report, lcl_two_phase_report* report);
+/** For each vertex of the mesh that a two-phase mesh was made from, the vertex of M^1 at whose limit point it lies: its own number, isolated ones too. vertices:
+ * as many as that mesh had, which is what `count` receives; NULL: count alone. LCL_ERROR_INVALID_ARGUMENT for a mesh that lcl_two_phase_mesh did not make. */
+LCL_API lcl_status lcl_two_phase_get_map(lcl_mesh refined, int32_t* vertices, size_t* count);
 
 /* ---------------------------------------------------------------- operators of your own */
 

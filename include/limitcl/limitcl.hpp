@@ -21,5 +21,6 @@
 #include "scheme.hpp"
 #include "solve.hpp"
 #include "texture.hpp"
+#include "two_phase.hpp"
 
 #endif
