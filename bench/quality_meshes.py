@@ -357,7 +357,7 @@ def morph_cases(quick, left_out):
             yield name, start, end, faces
 
 
-SHAPES = {"spot": "uv/spot.obj.gz", "hand": "tri/cgal_hand.off", "fandisk": "quad/fandisk_quads.off"}
+SHAPES = {"bumpy": "tri/bumpy.off", "hand": "tri/cgal_hand.off", "fandisk": "quad/fandisk_quads.off"}
 
 
 def shape_cases(quick, left_out):
