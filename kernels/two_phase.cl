@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The two-phase scheme on its refined mesh M^1 (two-phase paper, sections 3.3, 3.4 and 4; fairness: X that minimises |X - X_0|^2 + W |L X|^2 under the umbrellas' constraints, by projected
-// conjugate gradients). Every vertex of M^1 belongs to the umbrella of one old vertex, whose number is that of its centre.
+// conjugate gradients). Every vertex of M^1 belongs to the umbrella of one old vertex. Points stand umbrella after umbrella, the centre first, so that an umbrella lies together in memory.
 //
 // Steps that write points by umbrella have one work-item an umbrella, which writes the umbrella's points and nobody else's; steps by row have one a row. Sums are kept one a block, in double
 // where the device has it, and the host adds them in order: the same bits in every run. Meant for LCL_REAL double: positions have to be met to rounding.
@@ -13,12 +13,12 @@
 
 typedef LCL_JOIN(LCL_REAL, 3) point;
 
-/// offsets: count + 1. members: offsets[count] points of M^1. mask_of: count, number of the umbrella's mask. mask_offsets: first entry of each mask. masks: entries x 3, weights a, b, c.
+/// offsets: count + 1, first point of each umbrella. mask_of: count, number of the umbrella's mask. mask_offsets: first entry of each mask. masks: entries x 3, weights a, b, c.
 /// grams: masks x 7, 1 / sum a^2, then the inverse of G: (0,0) (0,1) (0,2) (1,1) (1,2) (2,2), zeros where there are no tangents. All read.
 #define LCL_UMBRELLAS                                                                                                                                                     \
-    const __global int *restrict offsets, const __global int *restrict members, const __global int *restrict mask_of, const __global int *restrict mask_offsets,           \
+    const __global int *restrict offsets, const __global int *restrict mask_of, const __global int *restrict mask_offsets,           \
         const __global real *restrict masks, const __global real *restrict grams
-#define LCL_UMBRELLA_ARGUMENTS offsets, members, mask_of, mask_offsets, masks, grams
+#define LCL_UMBRELLA_ARGUMENTS offsets, mask_of, mask_offsets, masks, grams
 
 /// The masks applied to an umbrella's points; V_inf relative to the centre, which keeps digits far from the origin.
 typedef struct {
@@ -27,11 +27,11 @@ typedef struct {
 
 inline lcl_mask_sums lcl_sum_masks(const int u, LCL_UMBRELLAS, const __global real *x) {
     const __global real *mask = masks + 3 * mask_offsets[mask_of[u]];
-    const point centre = vload3(u, x);
+    const point centre = vload3(offsets[u], x);
     lcl_mask_sums sums;
     sums.limit = sums.first = sums.second = (point)(0);
-    for (int k = offsets[u], entry = 1; k < offsets[u + 1]; ++k, ++entry) {
-        const point from_centre = vload3(members[k], x) - centre, weights = vload3(entry, mask);
+    for (int k = offsets[u] + 1, entry = 1; k < offsets[u + 1]; ++k, ++entry) {
+        const point from_centre = vload3(k, x) - centre, weights = vload3(entry, mask);
         sums.limit += weights.x * from_centre;
         sums.first += weights.y * from_centre;
         sums.second += weights.z * from_centre;
@@ -47,11 +47,9 @@ inline void lcl_least_norm_step(const int u, LCL_UMBRELLAS, const lcl_mask_sums 
     const point y = {gram[1] * along + gram[2] * first + gram[3] * second, gram[2] * along + gram[4] * first + gram[5] * second,
                      gram[3] * along + gram[5] * first + gram[6] * second};
     const point across = gram[0] * (residual - along * normal);
-    const point own = vload3(0, mask);
-    vstore3(vload3(u, x) + own.x * across + dot(own, y) * normal, u, x);
-    for (int k = offsets[u], entry = 1; k < offsets[u + 1]; ++k, ++entry) {
+    for (int k = offsets[u], entry = 0; k < offsets[u + 1]; ++k, ++entry) {
         const point weights = vload3(entry, mask);
-        vstore3(vload3(members[k], x) + weights.x * across + dot(weights, y) * normal, members[k], x);
+        vstore3(vload3(k, x) + weights.x * across + dot(weights, y) * normal, k, x);
     }
 }
 
@@ -65,7 +63,7 @@ __kernel void lcl_umbrella_repair(const int count, LCL_UMBRELLAS, const __global
     sides[u] = 1;
     if (!constrained[u]) return;
     const lcl_mask_sums sums = lcl_sum_masks(u, LCL_UMBRELLA_ARGUMENTS, x);
-    const point residual = (vload3(u, targets) - vload3(u, x)) - sums.limit, normal = vload3(u, normals);
+    const point residual = (vload3(u, targets) - vload3(offsets[u], x)) - sums.limit, normal = vload3(u, normals);
     distances[u] = length(residual);
     if (dot(normal, normal) > 0) sides[u] = dot(cross(sums.first, sums.second), normal);
     lcl_least_norm_step(u, LCL_UMBRELLA_ARGUMENTS, sums, residual, normal, x);
@@ -75,48 +73,48 @@ __kernel void lcl_umbrella_repair(const int count, LCL_UMBRELLAS, const __global
 __kernel void lcl_umbrella_scale(const int count, LCL_UMBRELLAS, const __global real *restrict handles, __global real *restrict x) {
     const int u = get_global_id(0);
     if (u >= count || handles[u] == 1) return;
-    const point limit = vload3(u, x) + lcl_sum_masks(u, LCL_UMBRELLA_ARGUMENTS, x).limit;
-    vstore3(limit + handles[u] * (vload3(u, x) - limit), u, x);
-    for (int k = offsets[u]; k < offsets[u + 1]; ++k) vstore3(limit + handles[u] * (vload3(members[k], x) - limit), members[k], x);
+    const point limit = vload3(offsets[u], x) + lcl_sum_masks(u, LCL_UMBRELLA_ARGUMENTS, x).limit;
+    for (int k = offsets[u]; k < offsets[u + 1]; ++k) vstore3(limit + handles[u] * (vload3(k, x) - limit), k, x);
 }
 
-#define LCL_ALONG_CURVE 0x80000000u
+#define LCL_COUNTS 0x80000000u
+#define LCL_IS_COUNTED 0x40000000u
+#define LCL_PLACE 0x3fffffffu
 
-/// Rows of L, the mean of a vertex's edge neighbours minus the vertex. row_offsets: points + 1. neighbours: all edge neighbours of each point, with LCL_ALONG_CURVE where the edge is sharp.
-/// lengths: points, how many neighbours the row counts; -2 on curves, which count those along the curve; 0: an empty row.
+/// Rows of L, the mean of the neighbours that count minus the point. row_offsets: points + 1. neighbours: the edge neighbours of each point, with LCL_COUNTS where its row counts them, and
+/// LCL_IS_COUNTED where theirs counts it. lengths: points, how many count; 0: an empty row.
 #define LCL_FAIR_ROWS const __global uint *restrict row_offsets, const __global uint *restrict neighbours, const __global int *restrict lengths
 
-/// z = L x with the partial sums of |z|^2. count: points; rows a block: block_rows. x: points x 3, read; z: the same, written. sums: one a block.
+/// z = L x, each row divided by its length, as L^T will want it, with the partial sums of |L x|^2. count: points; rows a block: block_rows. x: points x 3, read; z: the same, written.
+/// sums: one a block.
 __kernel __attribute__((reqd_work_group_size(LCL_GROUP, 1, 1))) void lcl_fair_laplacian(const int count, const int block_rows, LCL_FAIR_ROWS, const __global real *restrict x,
                                                                                        __global real *restrict z, __global sum_real *restrict sums) {
     LCL_SCRATCH(sum_real, scratch)
     const int lane = get_local_id(0), block = get_group_id(0);
     sum_real sum = 0;
     for (int i = block * block_rows + lane; i < min(count, (block + 1) * block_rows); i += LCL_GROUP) {
-        const int length = lengths[i];
         const point own = vload3(i, x);
+        const real share = (real)(1) / (real)(max(lengths[i], 1));
         point row = (point)(0);
-        for (uint e = row_offsets[i]; length != 0 && e < row_offsets[i + 1]; ++e)
-            if (length > 0 || (neighbours[e] & LCL_ALONG_CURVE)) row += vload3(neighbours[e] & ~LCL_ALONG_CURVE, x) - own;
-        if (length != 0) row /= (real)(abs(length));
-        vstore3(row, i, z);
+        for (uint e = row_offsets[i]; e < row_offsets[i + 1]; ++e)
+            if (neighbours[e] & LCL_COUNTS) row += vload3(neighbours[e] & LCL_PLACE, x) - own;
+        row *= share;
+        vstore3(share * row, i, z);
         sum += dot(row, row);
     }
     LCL_GROUP_STORE_SUM(sum, scratch, sums, block);
 }
 
-/// (L^T z)_i.
+/// (L^T L x)_i, x that of lcl_fair_laplacian: every row that counts i gives its share, i's own takes it away.
 inline point lcl_transposed(const int i, LCL_FAIR_ROWS, const __global real *restrict z) {
-    point value = -vload3(i, z);
-    for (uint e = row_offsets[i]; e < row_offsets[i + 1]; ++e) {
-        const int other = neighbours[e] & ~LCL_ALONG_CURVE, length = lengths[other];
-        if (length > 0 || (length < 0 && (neighbours[e] & LCL_ALONG_CURVE))) value += vload3(other, z) / (real)(abs(length));
-    }
+    point value = -(real)(lengths[i]) * vload3(i, z);
+    for (uint e = row_offsets[i]; e < row_offsets[i + 1]; ++e)
+        if (neighbours[e] & LCL_IS_COUNTED) value += vload3(neighbours[e] & LCL_PLACE, z);
     return value;
 }
 
-/// q = C (shift p + fair_weight L^T z) with the partial sums of p.q, C the projection on to directions in which limit points and tangent planes stay. count: umbrellas; umbrellas a block:
-/// block_rows. p, z: points x 3, read; q: the same, written. sums: one a block.
+/// q = C (shift p + fair_weight L^T L x) with the partial sums of p.q, C the projection on to directions in which limit points and tangent planes stay. count: umbrellas; umbrellas a block:
+/// block_rows. p: points x 3, z: that of lcl_fair_laplacian, read; q: the same, written. sums: one a block.
 __kernel __attribute__((reqd_work_group_size(LCL_GROUP, 1, 1))) void lcl_fair_apply(const int count, const int block_rows, LCL_UMBRELLAS, LCL_FAIR_ROWS,
                                                                                    const __global uchar *restrict constrained, const __global real *restrict normals, const real shift,
                                                                                    const real fair_weight, const __global real *restrict p, const __global real *restrict z,
@@ -125,19 +123,13 @@ __kernel __attribute__((reqd_work_group_size(LCL_GROUP, 1, 1))) void lcl_fair_ap
     const int lane = get_local_id(0), block = get_group_id(0);
     sum_real sum = 0;
     for (int u = block * block_rows + lane; u < min(count, (block + 1) * block_rows); u += LCL_GROUP) {
-        const int end = offsets[u + 1];
-        for (int k = offsets[u] - 1; k < end; ++k) {
-            const int i = k < offsets[u] ? u : members[k];
+        for (int i = offsets[u]; i < offsets[u + 1]; ++i)
             vstore3(shift * vload3(i, p) + fair_weight * lcl_transposed(i, row_offsets, neighbours, lengths, z), i, q);
-        }
         if (constrained[u]) {
             const lcl_mask_sums found = lcl_sum_masks(u, LCL_UMBRELLA_ARGUMENTS, q);
-            lcl_least_norm_step(u, LCL_UMBRELLA_ARGUMENTS, found, -vload3(u, q) - found.limit, vload3(u, normals), q);
+            lcl_least_norm_step(u, LCL_UMBRELLA_ARGUMENTS, found, -vload3(offsets[u], q) - found.limit, vload3(u, normals), q);
         }
-        for (int k = offsets[u] - 1; k < end; ++k) {
-            const int i = k < offsets[u] ? u : members[k];
-            sum += dot(vload3(i, p), vload3(i, q));
-        }
+        for (int i = offsets[u]; i < offsets[u + 1]; ++i) sum += dot(vload3(i, p), vload3(i, q));
     }
     LCL_GROUP_STORE_SUM(sum, scratch, sums, block);
 }

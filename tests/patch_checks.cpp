@@ -17,7 +17,7 @@ Surface::Surface(const shapes::Shape& shape_, const SchemeOptions& options_)
       options(options_),
       topology(build_topology(shape.mesh)),
       features(find_features(shape.mesh, topology, shape.features)),
-      table(build_patch_table(shape.mesh, topology, features, options)),
+      table(build_patch_table(topology, features, options)),
       control_(control_points(table, shape.mesh.positions, 3)) {}
 
 PatchPlace Surface::locate(const At& at) const {

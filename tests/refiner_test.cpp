@@ -5,8 +5,9 @@
 
 #include <catch2/catch.hpp>
 
-#include "host/refine/refiner.h"
+#include "host/refine/device_refiner.h"
 #include "tests/shapes/shapes.h"
+#include "tests/solver_support.h"
 
 using namespace lcl;
 
@@ -112,6 +113,30 @@ double largest_difference(const std::vector<double>& a, const std::vector<double
     return largest;
 }
 
+/// What a level may be off in units of the values' size: rows of at most 60 products, weights that sum to 1.
+double rounding_of(const Context& context, Real real) {
+    const bool pairs = real == Real::wide && !context.device().has_double;
+    return 64 * std::ldexp(1, real == Real::single ? -24 : pairs ? -46 : -52);
+}
+
+/// Values from the device against those of the host.
+void check_device(const shapes::Shape& shape, const SchemeOptions& options, int levels, int channels, Real real,
+                  const std::shared_ptr<Context>& context = solver_test::device_context()) {
+    INFO(shape.name << ", " << scheme_name(options.scheme) << ", lambda " << options.lambda << ", " << channels << " channels, type "
+                    << static_cast<int>(real));
+    const auto refiner = std::make_shared<const Refiner>(refiner_of(shape, options, levels));
+    DeviceRefiner device(context, refiner);
+    const std::vector<double> values = rough_values(shape.mesh.vertex_count, channels);
+    std::vector<double> found(static_cast<std::size_t>(refiner->vertex_count()) * channels), expected = found;
+    refiner->apply(values.data(), channels, channels, expected.data(), channels);
+    constexpr double largest_size = 3.5;  // of values between -1 and 1: the diagonal of a cube of side 2
+    for (int run = 0; run < 2; ++run) {   // the second one finds what lies between the levels
+        device.apply(values.data(), channels, channels, real, found.data(), channels);
+        CHECK(largest_difference(found, expected) < largest_size * levels * rounding_of(device.context(), real));
+        std::fill(found.begin(), found.end(), 99);
+    }
+}
+
 }  // namespace
 
 TEST_CASE("refined topology and features are those that are found in the refined mesh", "[refine][topology]") {
@@ -169,4 +194,49 @@ TEST_CASE("a pole of a hundred thousand faces and a face of as many sides refine
         CHECK(refiner_of(pole, options, 1).vertex_count() > 300000);
         CHECK(refiner_of(disk, options, 1).vertex_count() > 200000);
     }
+}
+
+TEST_CASE("a device refines values as the host does", "[refine][kernel]") {
+    for (const shapes::Shape& shape : shapes::all_shapes())
+        for (const SchemeOptions& options : options_for(shape)) {
+            check_device(shape, options, 2, 3, Real::single);
+            check_device(shape, options, 1, 6, Real::wide);
+        }
+    for (const int channels : {1, 2, 4, 11}) check_device(shapes::grid_with_creases(), scheme_of(Scheme::catmull_clark), 3, channels, Real::wide);
+    check_device(shapes::torus_quads(60, 50), scheme_of(Scheme::catmull_clark), 2, 3, Real::single);  // several chunks of rows
+    check_device(shapes::torus_triangles(60, 50), scheme_of(Scheme::loop), 2, 3, Real::wide);
+    if (solver_test::device_context()->device().has_double)
+        check_device(shapes::polygons_mixed(80, 2), scheme_of(Scheme::catmull_clark, 0.5), 2, 3, Real::full);
+}
+
+TEST_CASE("pairs of floats refine values where there is no double precision", "[refine][kernel]") {
+    for (const shapes::Shape& shape : {shapes::grid_with_creases(), shapes::polygons_mixed(60, 4), shapes::icosphere(1)})
+        for (const SchemeOptions& options : options_for(shape)) check_device(shape, options, 2, 3, Real::wide, solver_test::context_without_double());
+}
+
+TEST_CASE("every refinement kernel runs once on a small mesh", "[refine][kernel][tiny]") {
+    check_device(shapes::cube_with_crease(), scheme_of(Scheme::catmull_clark), 2, 3, Real::single);
+    check_device(shapes::triangular_prism(), scheme_of(Scheme::catmull_clark, 0.5), 2, 5, Real::wide);
+    check_device(shapes::disk_pole_triangles(5), scheme_of(Scheme::loop), 2, 2, Real::single);
+    check_device(shapes::triangular_prism(), scheme_of(Scheme::doo_sabin, 0, 0, DooSabinMask::classic), 1, 1, Real::single);
+}
+
+TEST_CASE("refinement on a device keeps isolated vertices and large coordinates, and refuses what is not finite", "[refine][kernel]") {
+    const shapes::Shape shape = shapes::with_isolated_vertex(shapes::transformed(shapes::octahedron(), 1e-3, 1e6), 2);
+    const auto refiner = std::make_shared<const Refiner>(refiner_of(shape, scheme_of(Scheme::loop), 2));
+    DeviceRefiner device(solver_test::device_context(), refiner);
+    std::vector<double> points = shape.mesh.positions, found(3 * static_cast<std::size_t>(refiner->vertex_count())), expected = found;
+    refiner->apply(points.data(), 3, 3, expected.data(), 3);
+    device.apply(points.data(), 3, 3, Real::single, found.data(), 3);
+    for (int c = 0; c < 3; ++c) found[6 + c] = expected[6 + c];  // its own coordinates are far from the others in their units
+    // Floats of centred values of size 1e-3 for two levels, and the doubles themselves at 1e6.
+    CHECK(largest_difference(found, expected) < 2e-3 * 2 * rounding_of(device.context(), Real::single) + 4e6 * std::ldexp(1, -52));
+    points[4] = std::nan("");
+    CHECK_THROWS_WITH(device.apply(points.data(), 3, 3, Real::single, found.data(), 3), Catch::Matchers::Contains("channel 1 of vertex 1 is not finite"));
+}
+
+TEST_CASE("levels that do not fit are refused before anything is made", "[refine]") {
+    CHECK_THROWS_WITH(refiner_of(shapes::cube(), scheme_of(Scheme::catmull_clark), 15),
+                      Catch::Matchers::Contains("refinement level ") && Catch::Matchers::Contains(": use fewer levels"));
+    CHECK_THROWS_AS(refiner_of(shapes::cube(), scheme_of(Scheme::catmull_clark), -1), InvalidArgument);
 }

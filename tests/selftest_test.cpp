@@ -35,12 +35,13 @@ TEST_CASE("every kernel agrees with the plain host operator on every device", "[
         succeed(lcl_context_selftest(context.get(), Results::note, &results));
         CHECK(results.failed == 0);
         CHECK(results.count > 20);
-        for (const char* kernel : {"lcl_limit_points",    "lcl_relax",         "lcl_relax_three_term", "lcl_residual",     "lcl_correct",
-                                   "lcl_relax_phase",     "lcl_relax_rows",    "lcl_cg_apply",         "lcl_cg_update",    "lcl_cg_direction",
-                                   "lcl_import_points",   "lcl_export_points", "lcl_gather_rows",      "lcl_scatter_rows", "lcl_noise",
-                                   "lcl_series",          "lcl_series_sums",   "lcl_filter",           "lcl_morph",        "lcl_morph_blend",
-                                   "lcl_morph_difference", "lcl_umbrella_repair", "lcl_umbrella_scale", "lcl_fair_laplacian", "lcl_fair_apply", "lcl_fair_update",
-                                   "lcl_fair_turn"}) {
+        for (const char* kernel : {"lcl_limit_points",     "lcl_relax",           "lcl_relax_three_term", "lcl_residual",       "lcl_correct",
+                                   "lcl_relax_phase",      "lcl_relax_rows",      "lcl_cg_apply",         "lcl_cg_update",      "lcl_cg_direction",
+                                   "lcl_import_points",    "lcl_export_points",   "lcl_gather_rows",      "lcl_scatter_rows",   "lcl_noise",
+                                   "lcl_series",           "lcl_series_sums",     "lcl_filter",           "lcl_morph",          "lcl_morph_blend",
+                                   "lcl_morph_difference", "lcl_umbrella_repair", "lcl_umbrella_scale",   "lcl_fair_laplacian", "lcl_fair_apply",
+                                   "lcl_fair_update",      "lcl_fair_turn",       "lcl_limit_normals",    "lcl_normals",        "lcl_frames",
+                                   "lcl_sector_normals",   "lcl_sector_frames",   "lcl_refine",           "lcl_evaluate",       "lcl_expand_cells"}) {
             INFO(kernel);
             CHECK(results.kernels.count(kernel) == 1);
         }

@@ -236,7 +236,7 @@ Operator make_operator(Job& job, lcl_context context, lcl_mesh mesh, const lcl_s
 }
 
 void write_output(Job& job, lcl_mesh mesh) {
-    const std::string shown = job.options.output == "-" ? "standard output" : job.options.output;
+    const std::string shown = shown_output(job.options);
     {
         const Phase phase(job, &Seconds::write, "writing " + shown);
         check(lcl_mesh_write(mesh, job.options.output.c_str(), job.options.output == "-" ? job.options.format : LCL_FORMAT_BY_ENDING));
@@ -249,6 +249,8 @@ void write_output(Job& job, lcl_mesh mesh) {
 std::string shown_name(const std::string& path) { return path == "-" ? "standard input" : path; }
 
 std::string shown_input(const Options& options) { return shown_name(options.input); }
+
+std::string shown_output(const Options& options) { return options.output == "-" ? "standard output" : options.output; }
 
 void say_seconds(Job& job) {
     const Seconds& seconds = job.report.seconds;

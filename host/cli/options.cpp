@@ -23,7 +23,7 @@ namespace lcl::cli {
 
 namespace {
 
-const std::array<const char*, 3> later_commands = {"evaluate", "closest", "surface"};
+const std::array<const char*, 1> later_commands = {"surface"};
 
 constexpr const char* scheme_group = "Scheme and sharp features";
 constexpr const char* solve_group = "Values and solving";
@@ -158,6 +158,8 @@ private:
     void add_sharpen();
     void add_morph();
     void add_texture();
+    void add_evaluate();
+    void add_closest();
     CLI::App* add_command(const char* name, const char* text, bool reads_mesh, bool writes_mesh);
     void add_later(CLI::App& command, const std::string& flag, bool takes_value);
     std::string common_help(bool reads_mesh) const;
@@ -262,6 +264,8 @@ void Parser::add_commands() {
     add_sharpen();
     add_morph();
     add_texture();
+    add_evaluate();
+    add_closest();
     for (const char* name : later_commands) {
         CLI::App* command = app_.add_subcommand(name)->group("")->prefix_command();
         command->set_help_flag();
@@ -285,7 +289,7 @@ void Parser::add_interpolate() {
 
 void Parser::add_limit() {
     CLI::App* command = add_command("limit", "Every vertex moved to its limit point", true, true);
-    add_later(*command, "--normals", false);
+    command->add_flag("--normals", options_.normals, "Unit limit normals too (OBJ, PLY, OFF): at creases the mean of the sides, 0 0 0 at isolated vertices");
 }
 
 void Parser::add_refine() {
@@ -368,6 +372,23 @@ void Parser::add_texture() {
     };
     add_parsed(*command, "--seed", options_.seed, seed, "Another texture for every number (default 0)")->type_name("S");
     command->add_flag("--on-mesh", options_.on_mesh, "OUT is IN itself with the colours at its vertices");
+}
+
+void Parser::add_evaluate() {
+    CLI::App* command = add_command("evaluate", "Exact points, derivatives and normals anywhere on the limit surface", true, false);
+    command->add_option("--at", options_.places_file, "CSV of places with header face,corner,u,v")->type_name("FILE.csv")->required();
+    command->add_option("-o,--output", options_.output, "Table to write; `-`: standard output")->type_name("OUT.csv")->required();
+    command
+        ->add_option("--derivatives", options_.derivatives,
+                     "0: points alone; 1 (default): first derivatives and normals too; 2: second ones and curvatures too")
+        ->check(count_within(0, 2))
+        ->type_name("0|1|2");
+}
+
+void Parser::add_closest() {
+    CLI::App* command = add_command("closest", "Closest points on the limit surface", true, false);
+    command->add_option("--points", options_.points_file, "Points: .ply .xyz .csv .off .obj .pts, also .gz")->type_name("FILE")->required();
+    command->add_option("-o,--output", options_.output, "Table to write; `-`: standard output")->type_name("OUT.csv")->required();
 }
 
 /// An option that is part of the command's contract but comes with a later version: known, so that asking for it gives a sentence of its own.

@@ -59,6 +59,9 @@ struct Options {
     bool refined = false;
     double fair = 0.0;  ///< 0: none
 
+    // limit
+    bool normals = false;
+
     // refine
     int levels = 1;
     bool limit = false;
@@ -99,6 +102,13 @@ struct Options {
     std::vector<double> colours;  ///< three numbers a colour; empty: the library's
     std::uint32_t seed = 0;
     bool on_mesh = false;
+
+    // evaluate
+    std::string places_file;
+    int derivatives = 1;
+
+    // closest
+    std::string points_file;
 
     bool has(const char* option) const { return given.count(option) > 0; }
 };

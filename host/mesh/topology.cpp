@@ -221,14 +221,7 @@ bool order_fans(const Walk& walk, Topology& topology) {
     return !is_broken;
 }
 
-/// Root of v in a forest of parents that never exceed their children; halves the path on the way.
-Index find_root(std::vector<Index>& parent, Index v) {
-    while (parent[v] != v) v = parent[v] = parent[parent[v]];
-    return v;
-}
-
-}  // namespace
-
+/// Numbers edges by their first half-edge.
 void number_edges(Topology& topology) {
     const std::size_t half_edges = topology.face_vertices.size(), pieces = piece_count(half_edges);
     const auto is_first = [&](std::size_t h) { return topology.twin[h] < 0 || topology.twin[h] > static_cast<Index>(h); };
@@ -253,6 +246,14 @@ void number_edges(Topology& topology) {
         }
     });
 }
+
+/// Root of v in a forest of parents that never exceed their children; halves the path on the way.
+Index find_root(std::vector<Index>& parent, Index v) {
+    while (parent[v] != v) v = parent[v] = parent[parent[v]];
+    return v;
+}
+
+}  // namespace
 
 bool connect(const PolygonMesh& mesh, Topology& topology) {
     set_faces(mesh, topology);

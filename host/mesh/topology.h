@@ -84,9 +84,6 @@ std::vector<Defect> find_defects_of_sound_mesh(const PolygonMesh& mesh);
 /// A mesh without faces is BadInput. Isolated vertices are allowed.
 Topology build_topology(const PolygonMesh& mesh);
 
-/// Numbers the edges of a topology that has all else but edge_count, edge_half_edge and half_edge_edge.
-void number_edges(Topology& topology);
-
 /// The topology of a mesh that build_topology takes, or none.
 std::optional<Topology> topology_if_sound(const PolygonMesh& mesh);
 

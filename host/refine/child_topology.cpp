@@ -28,6 +28,9 @@ void resize(Topology& child, Index degree) {
     child.fan_offsets.resize(static_cast<std::size_t>(child.vertex_count) + 1);
     child.vertex_half_edge.resize(child.vertex_count);
     child.vertex_face_count.resize(child.vertex_count);
+    child.half_edge_edge.resize(corners);
+    child.edge_half_edge.resize(child.edge_count);
+    child.fan_offsets[child.vertex_count] = child.face_offsets[child.face_count] = static_cast<Index>(corners);
 }
 
 void set_fan(Topology& child, Index v, Index offset, Index size) {
@@ -86,6 +89,32 @@ void set_counts(const Topology& parent, Topology& child, Index degree) {
     child.face_vertices.resize(static_cast<std::size_t>(degree) * child.face_count);
 }
 
+/// Numbers the edges of a child in the order of its half-edges, from the first face of a range of its parent's on: by then each old edge that has
+/// appeared has given two, and each corner one inside its face.
+class EdgeNumbers {
+public:
+    EdgeNumbers(const Topology& parent, Topology& child, Index first_face) : child_(child) {
+        const Index first = parent.face_offsets[first_face];
+        const auto older = std::lower_bound(parent.edge_half_edge.begin(), parent.edge_half_edge.end(), first) - parent.edge_half_edge.begin();
+        next_ = first + 2 * static_cast<Index>(older);
+    }
+    /// h is the first half-edge of an edge.
+    void add(Index h) {
+        const Index twin = child_.twin[h];
+        child_.edge_half_edge[next_] = h;
+        child_.half_edge_edge[h] = next_;
+        if (twin >= 0) child_.half_edge_edge[twin] = next_;
+        ++next_;
+    }
+
+private:
+    Topology& child_;
+    Index next_;
+};
+
+/// Of a half-edge with this twin; the two lie in different faces.
+bool appears_first(Index h, Index twin) { return twin < 0 || twin > h; }
+
 template <class Walk>
 void catmull_clark_faces(const Walk& walk, const Topology& parent, Topology& child) {
     const Index edge_points = parent.vertex_count, face_points = edge_points + parent.edge_count;
@@ -98,21 +127,32 @@ void catmull_clark_faces(const Walk& walk, const Topology& parent, Topology& chi
     });
 }
 
+/// Twins of the children of h, and the edges that appear first among them.
+template <class Walk>
+void connect_quad(const Walk& walk, const Topology& parent, Topology& child, Index h, EdgeNumbers& edges) {
+    const Index before = walk.previous(h), next = walk.next(h), t = parent.twin[h], t_before = parent.twin[before];
+    Index* const twin = &child.twin[4 * h];
+    twin[0] = t < 0 ? -1 : 4 * walk.next(t) + 3;
+    twin[1] = 4 * next + 2;
+    twin[2] = 4 * before + 1;
+    twin[3] = t_before < 0 ? -1 : 4 * t_before;
+    if (appears_first(h, t)) edges.add(4 * h);
+    if (next > h) edges.add(4 * h + 1);
+    if (before > h) edges.add(4 * h + 2);
+    if (appears_first(before, t_before)) edges.add(4 * h + 3);
+    std::fill_n(&child.half_edge_face[4 * h], 4, h);
+    child.face_offsets[h] = 4 * h;
+}
+
 template <class Walk>
 void connect_catmull_clark(const Walk& walk, const Topology& parent, Topology& child) {
-    for_each_index(parent.half_edge_count(), [&](Index h) {
-        const Index before = walk.previous(h), t = parent.twin[h], t_before = parent.twin[before];
-        Index* const twin = &child.twin[4 * h];
-        twin[0] = t < 0 ? -1 : 4 * walk.next(t) + 3;
-        twin[1] = 4 * walk.next(h) + 2;
-        twin[2] = 4 * before + 1;
-        twin[3] = t_before < 0 ? -1 : 4 * t_before;
-        std::fill_n(&child.half_edge_face[4 * h], 4, h);
-        child.face_offsets[h] = 4 * h;
+    parallel_for(parent.face_count, [&](std::size_t begin, std::size_t end) {
+        EdgeNumbers edges(parent, child, static_cast<Index>(begin));
+        for (Index h = parent.face_offsets[begin]; h < parent.face_offsets[end]; ++h) connect_quad(walk, parent, child, h, edges);
     });
     set_vertex_fans(parent, child, [](Index h) { return 4 * h; });
     set_edge_fans<2>(parent, child, [&](Index h) { return std::array<Index, 2>{4 * walk.next(h) + 3, 4 * h + 1}; });
-    const Index face_points = parent.vertex_count + parent.edge_count, offset = 4 * parent.half_edge_count() - parent.half_edge_count();
+    const Index face_points = parent.vertex_count + parent.edge_count, offset = child.half_edge_count() - parent.half_edge_count();
     for_each_index(parent.half_edge_count(), [&](Index h) { child.fan_half_edges[offset + h] = 4 * h + 2; });
     for_each_index(parent.face_count, [&](Index f) { set_fan(child, face_points + f, offset + parent.face_offsets[f], parent.degree(f)); });
 }
@@ -132,30 +172,37 @@ void loop_faces(const Topology& parent, Topology& child) {
     });
 }
 
-void connect_loop(const Topology& parent, Topology& child) {
+/// Where the corner triangle of half-edge h begins.
+Index corner_triangle(Index h) { return 12 * (h / 3) + 3 * (h % 3); }
+
+void connect_triangles(const Topology& parent, Topology& child, Index f, EdgeNumbers& edges) {
     const TriangleWalk walk;
-    // The corner triangle of half-edge h begins here.
-    const auto corner = [](Index h) { return 12 * (h / 3) + 3 * (h % 3); };
-    for_each_index(parent.face_count, [&](Index f) {
-        for (int k = 0; k < 3; ++k) {
-            const Index h = 3 * f + k, first = corner(h), t = parent.twin[h], t_before = parent.twin[walk.previous(h)];
-            child.twin[first] = t < 0 ? -1 : corner(walk.next(t)) + 2;
-            child.twin[first + 1] = 12 * f + 9 + (k + 2) % 3;
-            child.twin[first + 2] = t_before < 0 ? -1 : corner(t_before);
-            child.twin[12 * f + 9 + k] = corner(walk.next(h)) + 1;
-        }
-        for (int k = 0; k < 4; ++k) {
-            std::fill_n(&child.half_edge_face[12 * f + 3 * k], 3, 4 * f + k);
-            child.face_offsets[4 * f + k] = 12 * f + 3 * k;
-        }
-    });
-    set_vertex_fans(parent, child, corner);
-    set_edge_fans<3>(parent, child, [&](Index h) { return std::array<Index, 3>{corner(walk.next(h)) + 2, 12 * (h / 3) + 9 + h % 3, corner(h) + 1}; });
+    for (int k = 0; k < 3; ++k) {
+        const Index h = 3 * f + k, before = walk.previous(h), first = corner_triangle(h), t = parent.twin[h], t_before = parent.twin[before];
+        child.twin[first] = t < 0 ? -1 : corner_triangle(walk.next(t)) + 2;
+        child.twin[first + 1] = 12 * f + 9 + (k + 2) % 3;
+        child.twin[first + 2] = t_before < 0 ? -1 : corner_triangle(t_before);
+        child.twin[12 * f + 9 + k] = corner_triangle(walk.next(h)) + 1;
+        if (appears_first(h, t)) edges.add(first);
+        edges.add(first + 1);
+        if (appears_first(before, t_before)) edges.add(first + 2);
+    }
+    for (int k = 0; k < 4; ++k) {
+        std::fill_n(&child.half_edge_face[12 * f + 3 * k], 3, 4 * f + k);
+        child.face_offsets[4 * f + k] = 12 * f + 3 * k;
+    }
 }
 
-void finish(Topology& child) {
-    child.fan_offsets[child.vertex_count] = child.face_offsets[child.face_count] = child.half_edge_count();
-    number_edges(child);
+void connect_loop(const Topology& parent, Topology& child) {
+    const TriangleWalk walk;
+    parallel_for(parent.face_count, [&](std::size_t begin, std::size_t end) {
+        EdgeNumbers edges(parent, child, static_cast<Index>(begin));
+        for (Index f = static_cast<Index>(begin); f < static_cast<Index>(end); ++f) connect_triangles(parent, child, f, edges);
+    });
+    set_vertex_fans(parent, child, corner_triangle);
+    set_edge_fans<3>(parent, child, [&](Index h) {
+        return std::array<Index, 3>{corner_triangle(walk.next(h)) + 2, 12 * (h / 3) + 9 + h % 3, corner_triangle(h) + 1};
+    });
 }
 
 }  // namespace
@@ -170,7 +217,6 @@ Topology catmull_clark_topology(const Topology& parent, TopologyPart part) {
         if (part == TopologyPart::faces) return;
         resize(child, 4);
         connect_catmull_clark(walk, parent, child);
-        finish(child);
     });
     return child;
 }
@@ -184,7 +230,6 @@ Topology loop_topology(const Topology& parent, TopologyPart part) {
     if (part == TopologyPart::faces) return child;
     resize(child, 3);
     connect_loop(parent, child);
-    finish(child);
     return child;
 }
 

@@ -63,7 +63,7 @@ Refinement refine(const PolygonMesh& mesh, const FeatureOptions& feature_options
     return refined;
 }
 
-RefinedSize refined_size(const PolygonMesh&, const Topology& topology, const Features& features, const SchemeOptions& options, int levels) {
+RefinedSize refined_size(const Topology& topology, const Features& features, const SchemeOptions& options, int levels) {
     const StepInput input{topology, features, options};
     check_options(input);
     const std::optional<DooSabinLayout> layout = layout_of(input);

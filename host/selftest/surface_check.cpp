@@ -67,7 +67,7 @@ double difference(const std::vector<double>& values, const std::vector<SurfaceJe
 bool check_surface(const std::shared_ptr<Context>& context, const std::string& name, const PolygonMesh& mesh, const FeatureOptions& feature_options,
                    const SchemeOptions& scheme, Real real, const std::function<void(const SelftestResult&)>& report) {
     const Topology topology = build_topology(mesh);
-    DeviceSurface surface(context, build_patch_table(mesh, topology, find_features(mesh, topology, feature_options), scheme), real);
+    DeviceSurface surface(context, build_patch_table(topology, find_features(mesh, topology, feature_options), scheme), real);
     surface.set_points(mesh.positions.data(), 3);
     const PlaceList list = places_of(mesh);
     const std::size_t count = list.faces.size();

@@ -14,13 +14,13 @@ class DeviceSteps : public UmbrellaSteps {
 public:
     DeviceSteps(std::shared_ptr<Context> context, const Umbrellas& umbrellas, const UmbrellaTargets& targets)
         : context_(std::move(context)),
+          umbrellas_(umbrellas),
           count_(umbrellas.count),
           points_(umbrellas.vertex_count),
           group_(launch_shape(context_->device(), umbrellas.vertex_count).group),
           block_rows_(group_ == 1 ? rows_a_lane : 4 * group_),
           options_(kernel_options(*context_, Real::full, 1, group_)),
           offsets_(upload(umbrellas.offsets, "the umbrellas of a refined mesh")),
-          members_(upload(umbrellas.members, "the umbrellas of a refined mesh")),
           mask_of_(upload(umbrellas.mask_of, "the umbrellas of a refined mesh")),
           constrained_(upload(targets.constrained, "the umbrellas of a refined mesh")),
           targets_(upload(targets.points, "the vertices to interpolate")),
@@ -30,17 +30,21 @@ public:
         upload_masks(umbrellas.masks);
     }
 
-    void upload(const std::vector<double>& points) override { context_->write(x_, 0, points.size() * sizeof(double), points.data(), "uploading a refined mesh"); }
+    void upload(const std::vector<double>& points) override {
+        const std::vector<double> ordered = in_umbrella_order(umbrellas_, points);
+        context_->write(x_, 0, ordered.size() * sizeof(double), ordered.data(), "uploading a refined mesh");
+    }
 
     void download(std::vector<double>& points) override {
-        points.resize(3 * static_cast<std::size_t>(points_));
-        context_->read(x_, 0, points.size() * sizeof(double), points.data(), "reading a refined mesh");
+        std::vector<double> ordered(numbers());
+        context_->read(x_, 0, ordered.size() * sizeof(double), ordered.data(), "reading a refined mesh");
+        points = in_vertex_order(umbrellas_, ordered);
     }
 
     RepairFindings repair() override {
         const std::size_t bytes = static_cast<std::size_t>(count_) * sizeof(double);
         const Buffer distances(context_, bytes, "the findings of a repair"), sides(context_, bytes, "the findings of a repair");
-        launch(*context_, kernel("lcl_umbrella_repair"), by_item(count_), count_, offsets_, members_, mask_of_, mask_offsets_, masks_, grams_, constrained_,
+        launch(*context_, kernel("lcl_umbrella_repair"), by_item(count_), count_, offsets_, mask_of_, mask_offsets_, masks_, grams_, constrained_,
                targets_, normals_, x_, distances, sides);
         RepairFindings found{std::vector<double>(count_), std::vector<double>(count_)};
         context_->read(distances, 0, bytes, found.distances.data(), "reading the findings of a repair");
@@ -49,7 +53,7 @@ public:
     }
 
     void scale() override {
-        launch(*context_, kernel("lcl_umbrella_scale"), by_item(count_), count_, offsets_, members_, mask_of_, mask_offsets_, masks_, grams_, handles_, x_);
+        launch(*context_, kernel("lcl_umbrella_scale"), by_item(count_), count_, offsets_, mask_of_, mask_offsets_, masks_, grams_, handles_, x_);
     }
 
     void set_fairness(const FairRows& rows, double weight) override {
@@ -121,14 +125,14 @@ private:
         grams_ = upload(grams, "the masks of umbrellas");
     }
 
-    /// z = L v, with the sums of |z|^2
+    /// z = L v, each row divided by its length, with the sums of |L v|^2
     void laplacian(const Buffer& v) {
         launch(*context_, kernel("lcl_fair_laplacian"), by_block(points_), points_, block_rows_, row_offsets_, neighbours_, lengths_, v, z_, sums_);
     }
 
-    /// q = C (shift p + W L^T z)
+    /// q = C (shift p + W L^T L v), v that of laplacian
     void project_gradient(double shift) {
-        launch(*context_, kernel("lcl_fair_apply"), by_block(count_), count_, block_rows_, offsets_, members_, mask_of_, mask_offsets_, masks_, grams_,
+        launch(*context_, kernel("lcl_fair_apply"), by_block(count_), count_, block_rows_, offsets_, mask_of_, mask_offsets_, masks_, grams_,
                row_offsets_, neighbours_, lengths_, constrained_, normals_, shift, weight_, p_, z_, q_, sums_);
     }
 
@@ -148,11 +152,12 @@ private:
     }
 
     const std::shared_ptr<Context> context_;
+    const Umbrellas& umbrellas_;
     const cl_int count_, points_;
     const int group_;
     const cl_int block_rows_;
     const std::string options_;
-    const Buffer offsets_, members_, mask_of_, constrained_, targets_, normals_, handles_, x_;
+    const Buffer offsets_, mask_of_, constrained_, targets_, normals_, handles_, x_;
     Buffer mask_offsets_, masks_, grams_;
     Buffer row_offsets_, neighbours_, lengths_, z_, p_, q_, r_, sums_;
     double weight_ = 0;

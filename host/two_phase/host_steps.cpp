@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -43,8 +44,8 @@ class HostSteps : public UmbrellaSteps {
 public:
     HostSteps(const Umbrellas& umbrellas, const UmbrellaTargets& targets) : umbrellas_(umbrellas), targets_(targets) {}
 
-    void upload(const std::vector<double>& points) override { x_ = points; }
-    void download(std::vector<double>& points) override { points = x_; }
+    void upload(const std::vector<double>& points) override { x_ = in_umbrella_order(umbrellas_, points); }
+    void download(std::vector<double>& points) override { points = in_vertex_order(umbrellas_, x_); }
 
     RepairFindings repair() override {
         const auto count = static_cast<std::size_t>(umbrellas_.count);
@@ -121,19 +122,18 @@ private:
             smallest_piece);
     }
 
-    /// body(vertex, weights) for the centre and every member.
+    /// body(place, weights) for the centre and every member.
     template <class Body>
     void for_each_member(std::size_t u, const Body& body) const {
         const UmbrellaMask& mask = umbrellas_.masks[umbrellas_.mask_of[u]];
-        body(u, mask.weights[0]);
-        const Index first = umbrellas_.offsets[u];
-        for (Index k = first; k < umbrellas_.offsets[u + 1]; ++k) body(static_cast<std::size_t>(umbrellas_.members[k]), mask.weights[1 + k - first]);
+        const auto first = static_cast<std::size_t>(umbrellas_.offsets[u]);
+        for (std::size_t k = 0; k < mask.weights.size(); ++k) body(first + k, mask.weights[k]);
     }
 
     /// The three masks applied. Differences to the centre keep the digits of meshes far from the origin.
     Sums sums_of(const std::vector<double>& values, std::size_t u) const {
         Sums sums{};
-        const Vector centre = at(values, u);
+        const Vector centre = at(values, umbrellas_.offsets[u]);
         for_each_member(u, [&](std::size_t i, const std::array<double, 3>& weights) {
             const Vector from_centre = minus(at(values, i), centre);
             for (std::size_t c = 0; c < 3; ++c) {
@@ -162,37 +162,35 @@ private:
         });
     }
 
-    /// z = L v; gives |z|^2.
+    /// z = L v, each row divided by its length; gives |L v|^2.
     double laplacian(const std::vector<double>& v) {
         return sum(vertex_count(), [&](std::size_t i) {
             const Index length = rows_->lengths[i];
-            Vector mean{};
+            Vector row{};
             for (std::uint32_t e = rows_->offsets[i]; e < rows_->offsets[i + 1]; ++e) {
                 const std::uint32_t code = rows_->neighbours[e];
-                if (length < 0 && (code & FairRows::along_curve) == 0) continue;
-                const Vector from_centre = minus(at(v, code & ~FairRows::along_curve), at(v, i));
-                for (std::size_t c = 0; c < 3; ++c) mean[c] += from_centre[c] / std::abs(length);
+                if ((code & FairRows::counts) == 0) continue;
+                const Vector from_vertex = minus(at(v, code & FairRows::place), at(v, i));
+                for (std::size_t c = 0; c < 3; ++c) row[c] += from_vertex[c] / length;
             }
-            if (length == 0) mean = {};
-            for (std::size_t c = 0; c < 3; ++c) z_[3 * i + c] = mean[c];
-            return dot(mean, mean);
+            for (std::size_t c = 0; c < 3; ++c) z_[3 * i + c] = length == 0 ? 0 : row[c] / length;
+            return dot(row, row);
         });
     }
 
-    /// (L^T z)_i.
+    /// (L^T L v)_i of laplacian's v: every row that counts i gives its share, i's own takes it away.
     Vector transposed(std::size_t i) const {
         Vector value{};
-        for (std::size_t c = 0; c < 3; ++c) value[c] = -z_[3 * i + c];
+        for (std::size_t c = 0; c < 3; ++c) value[c] = -rows_->lengths[i] * z_[3 * i + c];
         for (std::uint32_t e = rows_->offsets[i]; e < rows_->offsets[i + 1]; ++e) {
-            const std::uint32_t code = rows_->neighbours[e], other = code & ~FairRows::along_curve;
-            const Index length = rows_->lengths[other];
-            if (length == 0 || (length < 0 && (code & FairRows::along_curve) == 0)) continue;
-            for (std::size_t c = 0; c < 3; ++c) value[c] += z_[3 * std::size_t{other} + c] / std::abs(length);
+            const std::uint32_t code = rows_->neighbours[e];
+            if ((code & FairRows::is_counted) == 0) continue;
+            for (std::size_t c = 0; c < 3; ++c) value[c] += z_[3 * std::size_t{code & FairRows::place} + c];
         }
         return value;
     }
 
-    /// q = C (shift p + W L^T z).
+    /// q = C (shift p + W L^T L v), v that of laplacian.
     void project_gradient(double shift) {
         for_each_umbrella([&](std::size_t u) {
             for_each_member(u, [&](std::size_t i, const std::array<double, 3>&) {
@@ -213,6 +211,22 @@ private:
 };
 
 }  // namespace
+
+std::vector<double> in_umbrella_order(const Umbrellas& umbrellas, const std::vector<double>& points) {
+    std::vector<double> ordered(points.size());
+    parallel_for(umbrellas.order.size(), [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) std::copy_n(&points[3 * static_cast<std::size_t>(umbrellas.order[i])], 3, &ordered[3 * i]);
+    });
+    return ordered;
+}
+
+std::vector<double> in_vertex_order(const Umbrellas& umbrellas, const std::vector<double>& ordered) {
+    std::vector<double> points(ordered.size());
+    parallel_for(umbrellas.order.size(), [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) std::copy_n(&ordered[3 * i], 3, &points[3 * static_cast<std::size_t>(umbrellas.order[i])]);
+    });
+    return points;
+}
 
 std::unique_ptr<UmbrellaSteps> make_host_steps(const Umbrellas& umbrellas, const UmbrellaTargets& targets) {
     return std::make_unique<HostSteps>(umbrellas, targets);

@@ -145,9 +145,10 @@ double largest_error(const Umbrellas& umbrellas, const UmbrellaTargets& targets,
         const UmbrellaMask& mask = umbrellas.masks[umbrellas.mask_of[u]];
         double error[3];
         for (std::size_t c = 0; c < 3; ++c) error[c] = centre[c] - targets.points[3 * static_cast<std::size_t>(u) + c];
-        for (Index k = umbrellas.offsets[u]; k < umbrellas.offsets[u + 1]; ++k)
-            for (std::size_t c = 0; c < 3; ++c)
-                error[c] += mask.weights[1 + k - umbrellas.offsets[u]][0] * (points[3 * static_cast<std::size_t>(umbrellas.members[k]) + c] - centre[c]);
+        for (std::size_t k = 1; k < mask.weights.size(); ++k) {
+            const double* const point = &points[3 * static_cast<std::size_t>(umbrellas.order[umbrellas.offsets[u] + k])];
+            for (std::size_t c = 0; c < 3; ++c) error[c] += mask.weights[k][0] * (point[c] - centre[c]);
+        }
         const double distance = std::sqrt(error[0] * error[0] + error[1] * error[1] + error[2] * error[2]);
         if (!(distance <= worst)) worst = distance;
     }
@@ -162,14 +163,13 @@ void repair_channels(const Umbrellas& umbrellas, const UmbrellaTargets& targets,
         for (std::size_t u = begin; u < end; ++u) {
             if (!targets.constrained[u]) continue;
             const UmbrellaMask& mask = umbrellas.masks[umbrellas.mask_of[u]];
-            const Index first = umbrellas.offsets[u], last = umbrellas.offsets[u + 1];
+            const Index* const order = &umbrellas.order[umbrellas.offsets[u]];
             for (std::size_t c = 0; c < count; ++c) {
                 if (!is_interpolated[c]) continue;
-                const auto value = [&](std::size_t i) -> double& { return further.values[i * count + c]; };
-                double residual = wanted.values[u * count + c] - mask.weights[0][0] * value(u);
-                for (Index k = first; k < last; ++k) residual -= mask.weights[1 + k - first][0] * value(umbrellas.members[k]);
-                value(u) += mask.inverse_square * residual * mask.weights[0][0];
-                for (Index k = first; k < last; ++k) value(umbrellas.members[k]) += mask.inverse_square * residual * mask.weights[1 + k - first][0];
+                double residual = wanted.values[u * count + c];
+                for (std::size_t k = 0; k < mask.weights.size(); ++k) residual -= mask.weights[k][0] * further.values[order[k] * count + c];
+                for (std::size_t k = 0; k < mask.weights.size(); ++k)
+                    further.values[order[k] * count + c] += mask.inverse_square * residual * mask.weights[k][0];
             }
         }
     });
@@ -206,9 +206,9 @@ Refinement make_refined(const PolygonMesh& control, const Topology& topology, co
     return refined;
 }
 
-FairRows fair_rows_of(const Refinement& refined) {
+FairRows fair_rows_of(const Umbrellas& umbrellas, const Refinement& refined) {
     const Topology topology = build_topology(refined.mesh);
-    return build_fair_rows(topology, find_features(refined.mesh, topology, refined.features));
+    return build_fair_rows(umbrellas, topology, find_features(refined.mesh, topology, refined.features));
 }
 
 }  // namespace
@@ -244,7 +244,7 @@ TwoPhase interpolate_two_phase(LimitSystem& system, const PolygonMesh& mesh, con
     const auto steps = context->device().has_double ? make_device_steps(context, umbrellas, targets) : make_host_steps(umbrellas, targets);
     steps->upload(result.refined.mesh.positions);
     note_repair(steps->repair(), result.findings);
-    if (options.fair > 0) make_fair(*steps, fair_rows_of(result.refined), options, result.findings);
+    if (options.fair > 0) make_fair(*steps, fair_rows_of(umbrellas, result.refined), options, result.findings);
     steps->scale();
     steps->download(result.refined.mesh.positions);
     repair_channels(umbrellas, targets, further, is_interpolated, result.further);

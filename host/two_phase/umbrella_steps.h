@@ -16,7 +16,7 @@ struct RepairFindings {
     std::vector<double> sides;      ///< (t1 x t2).N before, t1 and t2 of the mask: at most 0 where the surface looked to the other side; 1 without a normal
 };
 
-/// Holds X. L: the rows of set_fairness; C X = d: the constraints of the targets, linear in X; C the projection on to C Y = 0, least norm, vertex by vertex.
+/// Holds X, in the order of the umbrellas. L: the rows of set_fairness; C X = d: the constraints of the targets, linear in X; C the projection on to C Y = 0, least norm, vertex by vertex.
 class UmbrellaSteps {
 public:
     virtual ~UmbrellaSteps() = default;
@@ -41,6 +41,10 @@ public:
     /// p = r + beta p.
     virtual void turn(double beta) = 0;
 };
+
+/// Points (vertex_count x 3) by Umbrellas::order, and back.
+std::vector<double> in_umbrella_order(const Umbrellas& umbrellas, const std::vector<double>& points);
+std::vector<double> in_vertex_order(const Umbrellas& umbrellas, const std::vector<double>& ordered);
 
 /// In plain double on the host. Both references have to outlive the result.
 std::unique_ptr<UmbrellaSteps> make_host_steps(const Umbrellas& umbrellas, const UmbrellaTargets& targets);

@@ -52,12 +52,12 @@ class MaskTable {
 public:
     explicit MaskTable(std::vector<UmbrellaMask>& masks) : masks_(masks) {}
 
-    Index find(const Fan& fan, Index members) {
-        const auto [place, is_new] = known_.try_emplace({fan.kind, fan.kind == UmbrellaKind::fixed ? members : fan.faces, fan.second}, 0);
+    Index find(const Fan& fan, Index size) {
+        const auto [place, is_new] = known_.try_emplace({fan.kind, fan.kind == UmbrellaKind::fixed ? size : fan.faces, fan.second}, 0);
         if (!is_new) return place->second;
         place->second = static_cast<Index>(masks_.size());
         masks_.push_back(umbrella_mask(fan.kind, fan.kind == UmbrellaKind::fixed ? 0 : fan.faces, fan.second));
-        masks_.back().weights.resize(1 + static_cast<std::size_t>(members));  // of `fixed`: the vertex alone has a weight
+        masks_.back().weights.resize(size);  // of `fixed`: the vertex alone has a weight
         return place->second;
     }
 
@@ -75,12 +75,42 @@ struct Numbers {
     bool is_first(Index h) const { return topology.edge_half_edge[topology.half_edge_edge[h]] == h; }
 };
 
-void write_members(const Topology& topology, Index v, const Fan& fan, Index* out) {
+void write_umbrella(const Topology& topology, Index v, const Fan& fan, Index* out) {
+    *out++ = v;
+    if (fan.faces == 0) return;
     const Numbers number{topology};
     const Index* const half_edges = &topology.fan_half_edges[topology.fan_offsets[v]];
     for (Index j = 0; j < fan.faces; ++j) *out++ = number.near_point(half_edges[(fan.start + j) % fan.faces]);
     if (topology.is_boundary(v)) *out++ = number.far_point(topology.previous(half_edges[fan.faces - 1]));
     for (Index j = 0; j < fan.faces; ++j) *out++ = number.face_point(half_edges[(fan.start + j) % fan.faces]);
+}
+
+/// Whether v's row of the umbrella Laplacian counts the other end of h's edge.
+bool row_counts(const Topology& topology, const Features& features, Index v, Index h) {
+    switch (features.kind[v]) {
+        case VertexKind::smooth:
+        case VertexKind::dart: return true;
+        case VertexKind::curve: return is_sharp(topology, features, h);
+        case VertexKind::corner:
+        case VertexKind::isolated: break;
+    }
+    return false;
+}
+
+/// Gives the number of neighbours that count.
+Index write_fair_row(const Topology& topology, const Features& features, const Array<std::uint32_t>& place_of, Index v, std::uint32_t* out) {
+    Index length = 0;
+    const auto add = [&](Index h, Index other) {
+        const bool counts = row_counts(topology, features, v, h), is_counted = row_counts(topology, features, other, h);
+        length += counts;
+        *out++ = place_of[other] | (counts ? FairRows::counts : 0u) | (is_counted ? FairRows::is_counted : 0u);
+    };
+    for (Index i = topology.fan_offsets[v]; i < topology.fan_offsets[v + 1]; ++i) {
+        const Index h = topology.fan_half_edges[i];
+        add(h, topology.destination(h));
+        if (i + 1 == topology.fan_offsets[v + 1] && topology.is_boundary(v)) add(topology.previous(h), topology.origin(topology.previous(h)));
+    }
+    return length;
 }
 
 }  // namespace
@@ -91,26 +121,25 @@ Umbrellas build_umbrellas(const Topology& topology, const Features& features) {
     umbrellas.vertex_count = topology.vertex_count + 2 * topology.edge_count + topology.half_edge_count();
     umbrellas.offsets.resize(static_cast<std::size_t>(umbrellas.count) + 1);
     umbrellas.mask_of.resize(umbrellas.count);
-    umbrellas.members.resize(umbrellas.vertex_count - umbrellas.count);
+    umbrellas.order.resize(umbrellas.vertex_count);
     MaskTable table(umbrellas.masks);
     umbrellas.offsets[0] = 0;
     std::vector<Index> of_smooth;  // most vertices: found without a search
     for (Index v = 0; v < umbrellas.count; ++v) {
-        const Index faces = topology.vertex_face_count[v], members = topology.is_isolated(v) ? 0 : faces + topology.valence(v);
-        umbrellas.offsets[v + 1] = umbrellas.offsets[v] + members;
+        const Index faces = topology.vertex_face_count[v], size = topology.is_isolated(v) ? 1 : 1 + faces + topology.valence(v);
+        umbrellas.offsets[v + 1] = umbrellas.offsets[v] + size;
         const bool is_smooth = features.kind[v] == VertexKind::smooth;
         if (is_smooth && static_cast<std::size_t>(faces) >= of_smooth.size()) of_smooth.resize(static_cast<std::size_t>(faces) + 1, -1);
         if (is_smooth && of_smooth[faces] >= 0) {
             umbrellas.mask_of[v] = of_smooth[faces];
             continue;
         }
-        umbrellas.mask_of[v] = table.find(fan_of(topology, features, v), members);
+        umbrellas.mask_of[v] = table.find(fan_of(topology, features, v), size);
         if (is_smooth) of_smooth[faces] = umbrellas.mask_of[v];
     }
     parallel_for(umbrellas.count, [&](std::size_t begin, std::size_t end) {
         for (std::size_t v = begin; v < end; ++v)
-            if (umbrellas.offsets[v + 1] > umbrellas.offsets[v])
-                write_members(topology, static_cast<Index>(v), fan_of(topology, features, static_cast<Index>(v)), &umbrellas.members[umbrellas.offsets[v]]);
+            write_umbrella(topology, static_cast<Index>(v), fan_of(topology, features, static_cast<Index>(v)), &umbrellas.order[umbrellas.offsets[v]]);
     });
     return umbrellas;
 }
@@ -155,34 +184,27 @@ std::vector<std::uint8_t> convex_vertices(const Topology& topology, const std::v
     return convex;
 }
 
-FairRows build_fair_rows(const Topology& topology, const Features& features) {
+FairRows build_fair_rows(const Umbrellas& umbrellas, const Topology& topology, const Features& features) {
+    const auto vertices = static_cast<std::size_t>(topology.vertex_count);
+    if (vertices > FairRows::place)
+        throw OutOfMemory("the refined mesh has " + std::to_string(vertices) + " vertices, and fairness can number 1073741823: take a smaller mesh");
     FairRows rows;
-    rows.offsets.resize(static_cast<std::size_t>(topology.vertex_count) + 1);
-    rows.lengths.resize(topology.vertex_count);
+    Array<std::uint32_t> place_of(vertices);
+    rows.offsets.resize(vertices + 1);
     std::size_t entries = 0;
-    for (Index v = 0; v < topology.vertex_count; ++v) {
-        const Index valence = topology.is_isolated(v) ? 0 : topology.valence(v);
-        const VertexKind kind = features.kind[v];
-        rows.lengths[v] = kind == VertexKind::smooth || kind == VertexKind::dart ? valence : kind == VertexKind::curve ? -2 : 0;
-        entries += valence;
+    for (std::size_t i = 0; i < vertices; ++i) {
+        const Index v = umbrellas.order[i];
+        place_of[v] = static_cast<std::uint32_t>(i);
+        entries += topology.is_isolated(v) ? 0 : topology.valence(v);
         if (entries > std::numeric_limits<std::uint32_t>::max())
             throw OutOfMemory("the refined mesh has more than 4294967295 neighbours, which fairness cannot number: take a smaller mesh");
-        rows.offsets[v + 1] = static_cast<std::uint32_t>(entries);
+        rows.offsets[i + 1] = static_cast<std::uint32_t>(entries);
     }
     rows.neighbours.resize(entries);
-    parallel_for(topology.vertex_count, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t v = begin; v < end; ++v) {
-            std::uint32_t* out = rows.neighbours.data() + rows.offsets[v];
-            const auto add = [&](Index h, Index other) {
-                *out++ = static_cast<std::uint32_t>(other) | (is_sharp(topology, features, h) ? FairRows::along_curve : 0u);
-            };
-            for (Index i = topology.fan_offsets[v]; i < topology.fan_offsets[v + 1]; ++i) {
-                const Index h = topology.fan_half_edges[i];
-                add(h, topology.destination(h));
-                const bool is_last_of_boundary = i + 1 == topology.fan_offsets[v + 1] && topology.is_boundary(static_cast<Index>(v));
-                if (is_last_of_boundary) add(topology.previous(h), topology.origin(topology.previous(h)));
-            }
-        }
+    rows.lengths.resize(vertices);
+    parallel_for(vertices, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i)
+            rows.lengths[i] = write_fair_row(topology, features, place_of, umbrellas.order[i], rows.neighbours.data() + rows.offsets[i]);
     });
     return rows;
 }

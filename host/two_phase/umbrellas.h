@@ -15,8 +15,8 @@ namespace lcl {
 struct Umbrellas {
     Index count = 0;         ///< old vertices
     Index vertex_count = 0;  ///< of M^1
-    Array<Index> offsets;    ///< count + 1
-    Array<Index> members;    ///< vertices of M^1 but for the centre, in the order of UmbrellaMask
+    Array<Index> offsets;    ///< count + 1, into `order`
+    Array<Index> order;      ///< vertex_count: vertices of M^1, umbrella after umbrella, each in the order of UmbrellaMask, the centre first
     Array<Index> mask_of;    ///< count: which of `masks`
     std::vector<UmbrellaMask> masks;
 };
@@ -41,14 +41,15 @@ struct UmbrellaTargets {
 
 /// Rows of the umbrella Laplacian L of M^1: the mean of a vertex's edge neighbours minus the vertex; on boundary and crease curves, whose limit no other
 /// points have a part in, the mean of the two along the curve; 0 at corners and isolated vertices.
+/// Vertices are numbered by their place in Umbrellas::order, so that neighbours are near each other in memory.
 struct FairRows {
-    static constexpr std::uint32_t along_curve = 0x80000000u;
+    static constexpr std::uint32_t counts = 0x80000000u, is_counted = 0x40000000u, place = 0x3fffffffu;
     std::vector<std::uint32_t> offsets;  ///< vertex_count + 1
-    Array<std::uint32_t> neighbours;     ///< all edge neighbours of each vertex, with along_curve where the edge is sharp
-    std::vector<Index> lengths;          ///< vertex_count: neighbours that the row counts, on curves -2, 0 for an empty row
+    Array<std::uint32_t> neighbours;     ///< all edge neighbours of each vertex: a place, `counts` where the vertex's row counts it, `is_counted` where its row does
+    Array<Index> lengths;                ///< vertex_count: how many neighbours the row counts
 };
 
-/// Of a mesh with its topology and features. OutOfMemory above 2^32 - 1 entries.
-FairRows build_fair_rows(const Topology& topology, const Features& features);
+/// Of M^1 with its topology and features. OutOfMemory above 2^30 vertices or 2^32 - 1 entries.
+FairRows build_fair_rows(const Umbrellas& umbrellas, const Topology& topology, const Features& features);
 
 }  // namespace lcl

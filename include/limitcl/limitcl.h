@@ -100,8 +100,10 @@ typedef struct lcl_mesh_s* lcl_mesh;                   /**< polygons, points, sh
 typedef struct lcl_operator_s* lcl_operator;           /**< the limit operator A of one mesh and scheme on one context */
 typedef struct lcl_field_s* lcl_field;                 /**< n x c values that stay on a device */
 typedef struct lcl_task_s* lcl_task;                   /**< a call that runs beside the caller */
+typedef struct lcl_refiner_s* lcl_refiner;             /**< a refinement of one mesh, made once and applied often */
 typedef struct lcl_limit_surface_s* lcl_limit_surface; /**< the limit surface of a mesh as patches, with its control points on a context's device */
 typedef struct lcl_samples_s* lcl_samples;             /**< places on a limit surface, found once and evaluated often */
+typedef struct lcl_tangents_s* lcl_tangents;           /**< limit tangents at the vertices of an operator's mesh, for normals */
 
 /* ---------------------------------------------------------------- devices and contexts */
 
@@ -360,6 +362,43 @@ typedef LCL_ENUM(lcl_precision){LCL_PRECISION_MIXED = 0 /**< float sweeps, resid
 LCL_API lcl_status lcl_limit_points(lcl_operator A, const double* points, size_t stride, int32_t channels, lcl_precision precision, double* out,
                                     size_t out_stride);
 
+/* ---------------------------------------------------------------- limit normals and tangents at vertices */
+
+/* The normal of the limit surface at the limit of each vertex, t1 x t2 / |t1 x t2|, outwards where the faces are oriented so. A vertex has one normal a sector,
+ * the faces between two sharp edges or all of them; a vertex with several (inner creases, corners) gets their normalised mean, and each of them is a side.
+ * Isolated vertices have 0 0 0, as places where the tangents are parallel and creases whose sides cancel. Exact limits (left eigenvectors of the subdivision):
+ * - smooth vertices of at least three faces, darts of Catmull-Clark and Loop: both tangents round the vertex;
+ * - boundary and crease curves: along and across, Catmull-Clark up to 4 faces a sector, Loop up to 6, Doo-Sabin any; one face: the plane of the two edges;
+ * - corners: the plane of the two sharp edges for one face, Loop up to 2, Doo-Sabin any; where the edges form a straight line, what the surface leaves it by.
+ * Elsewhere the surface has no tangent plane, or one that shows only infinitely near, and the normal is a choice: curves of more faces and other corners take
+ * the tangents along and across that curves have; smooth vertices of two faces E_0 - E_1 and the difference of the faces, corners without two sharp edges
+ * and Doo-Sabin's darts the tangents of a smooth vertex.
+ * alpha and lambda change no normal (but alpha that of polygons' darts; lambda 1 leaves none, and the one for smaller lambda is given). Vertices outside a
+ * subset keep their points and still have the normal of the surface at their limit points. */
+
+/** Makes tangents of all vertices for normals: those of smooth rings use the operator's neighbours, others get stencils of their own, 28 to 52 bytes a
+ * neighbour. mesh: the one that A was made of, faces and sharp features unchanged (LCL_ERROR_INVALID_ARGUMENT where vertices differ); points do not matter.
+ * Linear time. LCL_ERROR_INVALID_ARGUMENT for operators of your own. */
+LCL_API lcl_status lcl_tangents_create(lcl_operator A, lcl_mesh mesh, lcl_tangents* tangents);
+LCL_API void lcl_tangents_retain(lcl_tangents tangents);
+LCL_API void lcl_tangents_release(lcl_tangents tangents);
+/** limit = A x and unit normals, on the device; returns at once. x: points, three channels. All fields are A's, of one precision, and differ; limit may be
+ * NULL. tangent and bitangent, both or neither NULL: the rest of an orthonormal frame, the first sector's direction along the curve (curves), to the first edge
+ * (else), turned into the plane of the normal, and normal x tangent; with them limit costs a pass of its own. About two passes. Normals and tangents are
+ * not centred or scaled; ghosts keep what their rows hold. */
+LCL_API lcl_status lcl_tangents_apply(lcl_tangents tangents, lcl_field x, lcl_field limit, lcl_field normals, lcl_field tangent, lcl_field bitangent);
+/** Number of sides: sectors of the vertices that have more than one. */
+LCL_API int32_t lcl_tangents_side_count(lcl_tangents tangents);
+/** Of each side the vertex, the first face in face order (the sector runs on from it to the next sharp edge), and the unit normal that the last
+ * lcl_tangents_apply found, for which this waits. Sides of a vertex follow each other. vertices, faces: side_count; normals: side_count x 3; each may be
+ * NULL. LCL_ERROR_INVALID_ARGUMENT for normals before the first apply. */
+LCL_API lcl_status lcl_tangents_get_sides(lcl_tangents tangents, int32_t* vertices, int32_t* faces, double* normals);
+/** The same in one call through host memory. points: vertex_count rows of three, `stride` values apart (0: 3), NULL: the mesh's. limit_points, normals:
+ * vertex_count rows of three, limit_stride and normal_stride values apart (0: 3); limit_points may be NULL or points. Normals are exact to some 1e-7 over the
+ * length of the edges relative to the diagonal in single precision, to 1e-7 in mixed where the device has no double precision, else to rounding. */
+LCL_API lcl_status lcl_limit_normals(lcl_operator A, lcl_mesh mesh, const double* points, size_t stride, lcl_precision precision, double* limit_points,
+                                     size_t limit_stride, double* normals, size_t normal_stride);
+
 /* ---------------------------------------------------------------- solving A P = M */
 
 typedef LCL_ENUM(lcl_solver){LCL_SOLVER_AUTO = 0, LCL_SOLVER_PIA = 1,         LCL_SOLVER_WPIA = 2,      LCL_SOLVER_JACOBI = 3,
@@ -497,13 +536,31 @@ typedef struct lcl_refine_options {
 #define LCL_REFINE_OPTIONS_INIT \
     { (uint32_t)sizeof(lcl_refine_options), 0 }
 
-/** Refines uniformly, in double on the host. alpha_auto, subset and owned are not looked at. alpha and lambda rule the first refinement alone (lambda: the
+/** Refines uniformly, in double on all cores of the host. alpha_auto, subset and owned are not looked at. alpha and lambda rule the first refinement alone (lambda: the
  * two-phase first step, which gives the mesh M^1); the result is read with alpha 0 and lambda 0, and carries refined creases and corners. Colours and scalar
  * properties are refined as channels; texture coordinates are dropped with a note. */
 LCL_API lcl_status lcl_mesh_refine(lcl_mesh mesh, const lcl_scheme_options* scheme, const lcl_refine_options* options, lcl_mesh* refined);
 /** Where each vertex of a refined mesh lies on the original's surface, in the parameters of `limitcl evaluate`: faces (-1: isolated) and corners: vertex_count;
  * uv: vertex_count x 2. */
 LCL_API lcl_status lcl_mesh_get_locations(lcl_mesh refined, int32_t* faces, int32_t* corners, double* uv);
+
+/** The topology of a refinement, made once for values that change: points of every frame, colours, other channels. context: the device that
+ * lcl_refiner_apply uses; NULL: the host, in double. Options, time and errors as lcl_mesh_refine; the refiner keeps what it needs of the mesh's faces and
+ * features as they are now, and the mesh. About 60 bytes a vertex of the mesh before the last level, and four bytes a corner of the refined one. */
+LCL_API lcl_status lcl_refiner_create(lcl_context context, lcl_mesh mesh, const lcl_scheme_options* scheme, const lcl_refine_options* options,
+                                      lcl_refiner* refiner);
+LCL_API void lcl_refiner_retain(lcl_refiner refiner);
+LCL_API void lcl_refiner_release(lcl_refiner refiner);
+/** Number of refined vertices. */
+LCL_API int32_t lcl_refiner_vertex_count(lcl_refiner refiner);
+/** What lcl_mesh_refine gives, with the points and properties that the mesh has now (in double on the host). */
+LCL_API lcl_status lcl_refiner_get_mesh(lcl_refiner refiner, lcl_mesh* refined);
+/** Refined values in the order of refined vertices. values: n x channels, n the vertices of the mesh, rows `stride` values apart (0: channels); out: the
+ * refined vertices x channels, `out_stride` values apart (0: channels), which may not overlap with values. precision: of the sums, as for lcl_limit_points; on
+ * the device values are centred and scaled, SINGLE loses about 1e-7 of their size a level. LCL_ERROR_BAD_INPUT for values that are not finite,
+ * LCL_ERROR_MEMORY where the device has no room. What lies between the levels stays on the device for the next call. */
+LCL_API lcl_status lcl_refiner_apply(lcl_refiner refiner, const double* values, size_t stride, int32_t channels, lcl_precision precision, double* out,
+                                     size_t out_stride);
 
 /* ---------------------------------------------------------------- the two-phase scheme: tangent planes, shape handles, fairness */
 

@@ -13,6 +13,7 @@
 
 #include "device.hpp"
 #include "error.hpp"
+#include "evaluate.hpp"
 #include "expansion.hpp"
 #include "io.hpp"
 #include "limit_operator.hpp"
