@@ -23,7 +23,8 @@ class Polygons:
     @staticmethod
     def of_faces(points, faces):
         """faces: f x d indices, or a list of lists."""
-        return Polygons(np.asarray(points, float), np.array([len(face) for face in faces]), np.concatenate([np.asarray(face) for face in faces]).astype(np.int64))
+        corners = np.concatenate([np.asarray(face) for face in faces]).astype(np.int64)
+        return Polygons(np.asarray(points, float), np.array([len(face) for face in faces]), corners)
 
     def starts(self):
         return np.cumsum(self.degrees) - self.degrees
@@ -42,7 +43,7 @@ class Polygons:
         return np.stack([self.corners[self.starts()[face[last]]], self.corners[last], self.corners[last + 1]], axis=1)
 
     def covering(self):
-        """Triangles, and how much each of them counts: the mean of two fans, round the first and the second corner, so that quads look the same from all four."""
+        """Triangles, and how much each of them counts: the mean of two fans, round the first and the second corner, so that quads look alike from all four."""
         if (self.degrees == 3).all():
             return self.triangles(), np.ones(len(self.degrees))
         faces = np.concatenate([self.triangles(), Polygons(self.points, self.degrees, self.next_corners()).triangles()])

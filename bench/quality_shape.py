@@ -120,8 +120,8 @@ def torus_check():
 
 
 def noise_draws(count):
-    """Arrays of n x 3, and what to divide sums of squares by. With few vertices the columns of all arrays together are orthonormal: the squares of what a linear
-    method makes of them then add up to the expectation for white noise."""
+    """Arrays of n x 3, and what to divide sums of squares by. With few vertices the columns of all arrays together are orthonormal: the squares of what a
+    linear method makes of them then add up to the expectation for white noise."""
     random = np.random.default_rng(11)
     if count > EXACT_NOISE:
         draws = -(-NOISE_VALUES // (3 * count))
