@@ -107,8 +107,10 @@ TEST_CASE("normals follow affine maps as normals do, and the origin does not mat
     Eigen::Matrix3d map;
     map << 2, 0.5, -0.25, 0, 1.5, 1, 0.75, 0, 0.8;
     std::vector<double> moved(shape.mesh.positions.size());
-    for (std::size_t i = 0; i < moved.size(); i += 3)
-        Eigen::Map<Eigen::Vector3d>(&moved[i]) = map * Eigen::Map<const Eigen::Vector3d>(&shape.mesh.positions[i]) + Eigen::Vector3d(1000, -2000, 500);
+    for (std::size_t i = 0; i < moved.size(); i += 3) {
+        const Eigen::Vector3d at = map * Eigen::Map<const Eigen::Vector3d>(&shape.mesh.positions[i]) + Eigen::Vector3d(1000, -2000, 500);
+        std::copy_n(at.data(), 3, &moved[i]);
+    }
     const Tangents tangents = make_tangents(A.get(), mesh.get());
     std::vector<int32_t> vertices(static_cast<std::size_t>(lcl_tangents_side_count(tangents.get())));
     succeed(lcl_tangents_get_sides(tangents.get(), vertices.data(), nullptr, nullptr));

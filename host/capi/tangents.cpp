@@ -9,8 +9,9 @@ namespace {
 
 TangentPlan plan_tangents(lcl_operator A, lcl_mesh mesh) {
     const LimitSystem& system = *required(A, "A")->system;
+    required(mesh, "mesh");
     if (system.origin != Origin::scheme) throw InvalidArgument("this operator is of no subdivision scheme: only limit operators have limit normals");
-    return build_tangent_plan(system.plan(), required(mesh, "mesh")->topology(), mesh->features(), system.scheme);
+    return build_tangent_plan(system.plan(), mesh->topology(), mesh->features(), system.scheme);
 }
 
 void check_positions(lcl_field x) {

@@ -25,7 +25,7 @@ void run_limit(Job& job) {
     const Mesh mesh = read_sound_input(job);
     check_output_format(job, mesh.get());
     job.report.set_parameter("precision", std::string(precision_name(job.options.precision)));
-    job.report.set_parameter("normals", job.options.normals);
+    job.report.set_parameter("normals", job.options.limit_normals);
     const SchemeChoice scheme = choose_scheme(job, mesh.get());
     const std::vector<std::string> channels = choose_channels(job, mesh.get());
     const Context context = device.finish();
@@ -33,9 +33,9 @@ void run_limit(Job& job) {
     note_scheme_in_use(job, A.get());
     say_scheme(job);
     std::vector<double> normals;
-    if (job.options.normals) normals = limit_normals(job, context.get(), A.get(), mesh.get());
+    if (job.options.limit_normals) normals = limit_normals(job, context.get(), A.get(), mesh.get());
     move_to_limit(job, context.get(), A.get(), mesh.get(), channels);
-    if (job.options.normals) check(lcl_mesh_set_normals(mesh.get(), normals.data()));
+    if (job.options.limit_normals) check(lcl_mesh_set_normals(mesh.get(), normals.data()));
     write_output(job, mesh.get());
 }
 

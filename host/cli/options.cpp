@@ -161,7 +161,6 @@ private:
     void add_evaluate();
     void add_closest();
     CLI::App* add_command(const char* name, const char* text, bool reads_mesh, bool writes_mesh);
-    void add_later(CLI::App& command, const std::string& flag, bool takes_value);
     std::string common_help(bool reads_mesh) const;
     std::string help_page() const;
     [[noreturn]] void refuse_extras(std::vector<std::string> extras) const;
@@ -170,7 +169,6 @@ private:
 
     Options& options_;
     CLI::App app_;
-    std::vector<CLI::Option*> later_options_;
 };
 
 std::string Parser::version_text() {
@@ -289,7 +287,7 @@ void Parser::add_interpolate() {
 
 void Parser::add_limit() {
     CLI::App* command = add_command("limit", "Every vertex moved to its limit point", true, true);
-    command->add_flag("--normals", options_.normals, "Unit limit normals too (OBJ, PLY, OFF): at creases the mean of the sides, 0 0 0 at isolated vertices");
+    command->add_flag("--normals", options_.limit_normals, "Unit limit normals too (OBJ, PLY, OFF): at creases the mean of the sides, 0 0 0 at isolated vertices");
 }
 
 void Parser::add_refine() {
@@ -391,13 +389,6 @@ void Parser::add_closest() {
     command->add_option("-o,--output", options_.output, "Table to write; `-`: standard output")->type_name("OUT.csv")->required();
 }
 
-/// An option that is part of the command's contract but comes with a later version: known, so that asking for it gives a sentence of its own.
-void Parser::add_later(CLI::App& command, const std::string& flag, bool takes_value) {
-    CLI::Option* option = takes_value ? command.add_option_function<std::string>(flag, [](const std::string&) {}) : command.add_flag(flag);
-    option->group("");
-    later_options_.push_back(option);
-}
-
 std::string Parser::common_help(bool reads_mesh) const {
     const CLI::Formatter formatter;
     std::string text = "Before or after the command's name:";
@@ -425,10 +416,6 @@ void Parser::refuse_what_is_not_there() const {
     for (const char* name : later_commands) {
         if (options_.command == name)
             fail(exit_usage, std::string("this version does not have '") + name + "' yet; `limitcl --help` lists the commands it has");
-    }
-    for (const CLI::Option* option : later_options_) {
-        if (option->count() > 0)
-            fail(exit_usage, "this version does not have " + options_.command + " --" + option->get_lnames().front() + " yet; leave the option out");
     }
 }
 

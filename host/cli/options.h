@@ -60,7 +60,7 @@ struct Options {
     double fair = 0.0;  ///< 0: none
 
     // limit
-    bool normals = false;
+    bool limit_normals = false;
 
     // refine
     int levels = 1;

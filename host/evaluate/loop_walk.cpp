@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "host/evaluate/loop_walk.h"
 
+#include <algorithm>
+
 #include "host/evaluate/kind_rows.h"
 
 namespace lcl {
@@ -48,6 +50,47 @@ VertexKind RefinedTriangles::kind(Index v) const {
     return features_.edge_is_sharp[v - topology_.vertex_count] ? VertexKind::curve : VertexKind::smooth;
 }
 
+std::array<Index, 12> RefinedTriangles::smooth_points(Index h) const {
+    return h % 12 < 9 ? smooth_corner_points(h / 12 * 3 + h % 12 / 3) : smooth_middle_points(h / 12);
+}
+
+/// Of the child at the corner of half-edge h of the mesh: the points of the six edges at V, and of those across from it.
+std::array<Index, 12> RefinedTriangles::smooth_corner_points(Index h) const {
+    const Index before = previous(h), below = topology_.twin[h], beside = topology_.twin[before];
+    const Index to_left = previous(beside), left = topology_.twin[to_left], to_far = previous(left);
+    return {edge_point(previous(topology_.twin[to_far])),  // j = -1
+            edge_point(next(below)),
+            edge_point(previous(below)),
+            edge_point(to_far),  // 0
+            topology_.face_vertices[h],
+            edge_point(h),
+            topology_.face_vertices[next(h)],
+            edge_point(to_left),  // 1
+            edge_point(before),
+            edge_point(next(h)),
+            edge_point(next(beside)),  // 2
+            topology_.face_vertices[before]};
+}
+
+/// Of the middle child: the corners of its face, and the points of the faces across the three edges.
+std::array<Index, 12> RefinedTriangles::smooth_middle_points(Index face) const {
+    const Index h = 3 * face;
+    const Index* const twins = &topology_.twin[h];
+    const Index* const vertices = &topology_.face_vertices[h];
+    return {edge_point(previous(twins[0])),  // j = -1
+            vertices[1],
+            edge_point(next(twins[1])),
+            edge_point(next(twins[0])),  // 0
+            edge_point(h),
+            edge_point(h + 1),
+            edge_point(previous(twins[1])),
+            vertices[0],  // 1
+            edge_point(h + 2),
+            vertices[2],
+            edge_point(previous(twins[2])),  // 2
+            edge_point(next(twins[2]))};
+}
+
 LoopWalk::LoopWalk(const Topology& topology, const Features& features) : fine_(topology, features) {
     if (fine_.has_sharp_edges()) number_ghosts();
 }
@@ -71,6 +114,14 @@ bool LoopWalk::has_sharp_edge(Index h) const {
         e = fine_.rotate(e);
     } while (e != h);
     return false;
+}
+
+/// No sharp feature at the three vertices of a child.
+bool LoopWalk::is_smooth(Index h) const {
+    if (!fine_.has_sharp_edges()) return true;  // marked corners are irregular
+    for (int corner = 0; corner < 3; ++corner, h = fine_.next(h))
+        if (fine_.kind(fine_.origin(h)) != VertexKind::smooth) return false;
+    return true;
 }
 
 LoopWalk::Sector LoopWalk::sector_of(Index h) const {
@@ -145,7 +196,12 @@ Index* LoopWalk::ring(Index h, const LoopPlace& place, Index* out) const {
 }
 
 void LoopWalk::points(Index h, const LoopPlace& place, Index* out) const {
-    if (place.round == LoopRound::regular) return regular_points(h, out);
+    if (place.round == LoopRound::regular) {
+        if (!is_smooth(h)) return regular_points(h, out);
+        const std::array<Index, 12> smooth = fine_.smooth_points(h);
+        std::copy(smooth.begin(), smooth.end(), out);
+        return;
+    }
     out = ring(h, place, out);
     const auto clockwise = [&](Index e) { return fine_.next(fine_.twin(e)); };
     const Index to_middle = clockwise(fine_.next(h)), to_right = clockwise(to_middle);  // from A to (1, 1) and to (2, 0)

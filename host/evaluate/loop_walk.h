@@ -8,6 +8,7 @@
 // B = (0, 1). A and B are regular: six triangles round them, or three between the two edges of a sharp curve.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <tuple>
 
@@ -56,8 +57,8 @@ public:
 
     Index half_edge_count() const { return 4 * topology_.half_edge_count(); }
     Index vertex_count() const { return topology_.vertex_count + topology_.edge_count; }
-    Index next(Index h) const { return h % 3 == 2 ? h - 2 : h + 1; }
-    Index previous(Index h) const { return h % 3 == 0 ? h + 2 : h - 1; }
+    static Index next(Index h) { return h % 3 == 2 ? h - 2 : h + 1; }
+    static Index previous(Index h) { return h % 3 == 0 ? h + 2 : h - 1; }
     Index origin(Index h) const;
     Index destination(Index h) const { return origin(next(h)); }
     Index twin(Index h) const;
@@ -66,8 +67,14 @@ public:
     bool has_sharp_edges() const { return topology_.boundary_edge_count > 0 || features_.crease_count > 0; }
     VertexKind kind(Index v) const;
     Index face_count(Index v) const { return v < topology_.vertex_count ? topology_.vertex_face_count[v] : 6; }
+    /// The control points of the patch at h, the first half-edge of a child, where its three vertices are smooth and have six triangles: what most patches are.
+    std::array<Index, 12> smooth_points(Index h) const;
 
 private:
+    std::array<Index, 12> smooth_corner_points(Index h) const;
+    std::array<Index, 12> smooth_middle_points(Index face) const;
+    Index edge_point(Index coarse) const { return topology_.vertex_count + topology_.half_edge_edge[coarse]; }
+
     const Topology& topology_;
     const Features& features_;
 };
@@ -93,6 +100,7 @@ private:
     };
 
     bool has_sharp_edge(Index h) const;
+    bool is_smooth(Index h) const;
     Sector sector_of(Index h) const;
     void six_round(Index h, Index* six) const;
     void six_round_sector(Index h, Index* six) const;

@@ -373,10 +373,11 @@ LCL_API lcl_status lcl_limit_points(lcl_operator A, const double* points, size_t
  * Elsewhere the surface has no tangent plane, or one that shows only infinitely near, and the normal is a choice: curves of more faces and other corners take
  * the tangents along and across that curves have; smooth vertices of two faces E_0 - E_1 and the difference of the faces, corners without two sharp edges
  * and Doo-Sabin's darts the tangents of a smooth vertex.
- * alpha and lambda change no normal (but alpha that of polygons' darts; lambda 1 leaves none, and the one for smaller lambda is given). Vertices outside a
- * subset keep their points and still have the normal of the surface at their limit points. */
+ * Loop's and Doo-Sabin's surfaces fold over in hollow corners (above 180 degrees), and so do their normals. lambda changes no normal, alpha those of darts
+ * alone (lambda 1 leaves no surface to have one, and the one of smaller lambda is given). Vertices outside a subset keep their points and still have the normal
+ * of the surface at their limit points. */
 
-/** Makes tangents of all vertices for normals: those of smooth rings use the operator's neighbours, others get stencils of their own, 28 to 52 bytes a
+/** Makes tangents of all vertices for normals: those of smooth rings use the operator's neighbours, others get stencils of their own, some 50 bytes a
  * neighbour. mesh: the one that A was made of, faces and sharp features unchanged (LCL_ERROR_INVALID_ARGUMENT where vertices differ); points do not matter.
  * Linear time. LCL_ERROR_INVALID_ARGUMENT for operators of your own. */
 LCL_API lcl_status lcl_tangents_create(lcl_operator A, lcl_mesh mesh, lcl_tangents* tangents);
