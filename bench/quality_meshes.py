@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Triangle meshes for bench/quality: reading and writing, shapes of its own, and pairs from a collection of meshes (environment LIMITCL_MESHES).
+"""Meshes for bench/quality: reading and writing, shapes of its own, and those of a collection of meshes (environment LIMITCL_MESHES).
 
-Points are n x 3 doubles, faces f x 3 indices."""
+Points are n x 3 doubles, faces of triangle meshes f x 3 indices; meshes of any polygons are Polygons."""
+import dataclasses
 import gzip
 import os
 
@@ -10,6 +11,57 @@ from scipy.spatial import Delaunay
 
 PLY_TYPES = {"char": "i1", "uchar": "u1", "short": "i2", "ushort": "u2", "int": "i4", "uint": "u4", "float": "f4", "double": "f8",
              "int8": "i1", "uint8": "u1", "int16": "i2", "uint16": "u2", "int32": "i4", "uint32": "u4", "float32": "f4", "float64": "f8"}
+
+
+@dataclasses.dataclass
+class Polygons:
+    """points: n x 3; degrees: corners of each face; corners: the vertices of all faces, one after the other."""
+    points: np.ndarray
+    degrees: np.ndarray
+    corners: np.ndarray
+
+    @staticmethod
+    def of_faces(points, faces):
+        """faces: f x d indices, or a list of lists."""
+        corners = np.concatenate([np.asarray(face) for face in faces]).astype(np.int64)
+        return Polygons(np.asarray(points, float), np.array([len(face) for face in faces]), corners)
+
+    def starts(self):
+        return np.cumsum(self.degrees) - self.degrees
+
+    def next_corners(self):
+        """Every face turned by one corner."""
+        turned = np.roll(self.corners, -1)
+        turned[self.starts() + self.degrees - 1] = self.corners[self.starts()]
+        return turned
+
+    def triangles(self):
+        """Every face as a fan round its first corner: f x 3."""
+        face, here = np.repeat(np.arange(len(self.degrees)), self.degrees), np.arange(len(self.corners))
+        place = here - self.starts()[face]
+        last = here[(place > 0) & (place < self.degrees[face] - 1)]
+        return np.stack([self.corners[self.starts()[face[last]]], self.corners[last], self.corners[last + 1]], axis=1)
+
+    def covering(self):
+        """Triangles, and how much each of them counts: the mean of two fans, round the first and the second corner, so that quads look alike from all four."""
+        if (self.degrees == 3).all():
+            return self.triangles(), np.ones(len(self.degrees))
+        faces = np.concatenate([self.triangles(), Polygons(self.points, self.degrees, self.next_corners()).triangles()])
+        return faces, np.full(len(faces), 0.5)
+
+    def edges(self):
+        """e x 2, each once."""
+        return np.unique(np.sort(np.stack([self.corners, self.next_corners()], axis=1), axis=1), axis=0)
+
+    def triangulated(self):
+        """The same surface as a mesh of triangles: fans, or quads cut along their shorter diagonals, whichever has more vertices with six edges, as suits the
+        schemes of triangles."""
+        turned, quads = self.corners.copy(), self.starts()[self.degrees == 4, None] + np.arange(4)
+        a, b, c, d = (self.points[self.corners[quads[:, i]]] for i in range(4))
+        is_other = np.linalg.norm(d - b, axis=1) < (1 - 1e-9) * np.linalg.norm(c - a, axis=1)
+        turned[quads[is_other]] = np.roll(self.corners[quads[is_other]], -1, axis=1)
+        found = [self.triangles(), Polygons(self.points, self.degrees, turned).triangles()]
+        return Polygons.of_faces(self.points, max(found, key=lambda faces: (np.bincount(faces.ravel()) == 6).sum()))
 
 
 # ---------------------------------------------------------------- files
@@ -21,7 +73,44 @@ def read_obj(text):
             points.append([float(word) for word in line.split()[1:4]])
         elif line.startswith("f "):
             faces.append([int(word.split("/")[0]) - 1 for word in line.split()[1:]])
-    return np.array(points), np.array(faces)
+    return points, faces
+
+
+def read_off(text):
+    """Counts, points, faces; nothing behind a face's corners."""
+    words = iter(text.split()[1:])
+    point_count, face_count, _ = (int(next(words)) for _ in range(3))
+    points = [[float(next(words)) for _ in range(3)] for _ in range(point_count)]
+    return points, [[int(next(words)) for _ in range(int(next(words)))] for _ in range(face_count)]
+
+
+def read_polygons(path):
+    """OBJ or OFF."""
+    with (gzip.open if path.endswith(".gz") else open)(path, "rt") as file:
+        text = file.read()
+    return Polygons.of_faces(*(read_off if text.startswith("OFF") else read_obj)(text))
+
+
+def write_obj(path, mesh):
+    ends = mesh.starts() + mesh.degrees
+    with open(path, "w") as file:
+        file.writelines(f"v {x!r} {y!r} {z!r}\n" for x, y, z in mesh.points.tolist())
+        file.writelines("f " + " ".join(map(str, mesh.corners[end - degree:end] + 1)) + "\n" for degree, end in zip(mesh.degrees, ends))
+
+
+def read_ply_polygons(path):
+    """What limitcl writes from write_obj's files: three doubles a vertex; lists of a byte and integers."""
+    with open(path, "rb") as file:
+        header, body = file.read().split(b"end_header\n", 1)
+    vertex_count, face_count = (int(line.split()[2]) for line in header.decode().splitlines() if line.startswith("element"))
+    points = np.frombuffer(body, "<f8", 3 * vertex_count).reshape(-1, 3)
+    lists, at, degrees = memoryview(body)[points.nbytes:], 0, np.empty(face_count, np.int64)
+    for face in range(face_count):
+        degrees[face] = lists[at]
+        at += 1 + 4 * lists[at]
+    is_index = np.ones(at, bool)
+    is_index[np.cumsum(1 + 4 * degrees) - 1 - 4 * degrees] = False
+    return Polygons(points, degrees, np.frombuffer(np.frombuffer(lists, np.uint8)[is_index].tobytes(), "<i4").astype(np.int64))
 
 
 def read_ply(data):
@@ -49,7 +138,10 @@ def read_ply(data):
 def read_mesh(path):
     with (gzip.open if path.endswith(".gz") else open)(path, "rb") as file:
         data = file.read()
-    return read_ply(data) if data.startswith(b"ply") else read_obj(data.decode())
+    if data.startswith(b"ply"):
+        return read_ply(data)
+    points, faces = read_obj(data.decode())
+    return np.array(points), np.array(faces)
 
 
 def write_ply(path, points, faces):
@@ -167,6 +259,37 @@ def turned(points, degrees):
     return points @ (np.eye(3) + np.sin(angle) * cross + (1 - np.cos(angle)) * cross @ cross)
 
 
+def boxes(cells):
+    """The surface of unit cubes at whole places: Polygons of quads."""
+    cells, faces = set(cells), []
+    for cell in sorted(cells):
+        for axis in range(3):
+            for side in (0, 1):
+                beside = tuple(cell[i] + (2 * side - 1) * (i == axis) for i in range(3))
+                if beside not in cells:
+                    a, b = (np.eye(3, dtype=int)[(axis + turn) % 3] for turn in ((1, 2) if side else (2, 1)))
+                    corner = np.array(cell) + side * np.eye(3, dtype=int)[axis]
+                    faces.append([corner, corner + a, corner + a + b, corner + b])
+    points, corners = np.unique(np.array(faces).reshape(-1, 3), axis=0, return_inverse=True)
+    return Polygons.of_faces(points, corners.reshape(-1, 4))
+
+
+def octahedron():
+    points = np.concatenate([np.eye(3), -np.eye(3)])
+    return points, np.array([(x, y, z) if (x + y + z) % 2 else (x, z, y) for x in (0, 3) for y in (1, 4) for z in (2, 5)])
+
+
+def quad_torus(around, across, noise):
+    """Radii 1 and 0.4; Gaussian noise along the normals, its standard deviation `noise` mean edge lengths."""
+    u, v = np.meshgrid(np.arange(around) * 2 * np.pi / around, np.arange(across) * 2 * np.pi / across, indexing="ij")
+    normals = np.stack([np.cos(v) * np.cos(u), np.cos(v) * np.sin(u), np.sin(v)], axis=2).reshape(-1, 3)
+    points = np.stack([np.cos(u), np.sin(u), 0 * u], axis=2).reshape(-1, 3) + 0.4 * normals
+    here = np.arange(around * across).reshape(around, across)
+    faces = np.stack([here, np.roll(here, -1, 0), np.roll(here, (-1, -1), (0, 1)), np.roll(here, -1, 1)], axis=2).reshape(-1, 4)
+    edge = np.mean([np.linalg.norm(points[faces[:, i]] - points[faces[:, i - 1]], axis=1).mean() for i in (1, 2)])
+    return Polygons.of_faces(points + np.random.default_rng(7).normal(0, noise * edge, (len(points), 1)) * normals, faces)
+
+
 # ---------------------------------------------------------------- cases
 
 def vertex_normals(points, faces):
@@ -233,3 +356,25 @@ def morph_cases(quick, left_out):
         elif not quick:
             (start, faces), (end, _) = (read_mesh(file) for file in files)
             yield name, start, end, faces
+
+
+SHAPES = {"bumpy": "tri/bumpy.off", "hand": "tri/cgal_hand.off", "fandisk": "quad/fandisk_quads.off"}
+
+
+def shape_cases(quick, left_out):
+    """(name, Polygons), closed: few vertices, then many."""
+    from quality_butterfly import middles, refine
+    yield "cube", boxes([(0, 0, 0)])
+    yield "icosahedron", Polygons.of_faces(*icosphere(0))
+    if quick:
+        return
+    yield "L of three cubes", boxes([(0, 0, 0), (1, 0, 0), (0, 1, 0)])
+    yield "octahedron, cut once", Polygons.of_faces(*refine(*octahedron(), 1, middles))
+    yield "torus of 6 x 4 quads", quad_torus(6, 4, 0)
+    yield "star", read_polygons(os.path.join(os.path.dirname(os.path.dirname(os.path.abspath(__file__))), "examples", "star.obj"))
+    yield "torus of 32 x 16 quads, noise 0.1", quad_torus(32, 16, 0.1)
+    for name, file in SHAPES.items():
+        if collection(file):
+            yield name, read_polygons(collection(file))
+        else:
+            left_out.append(f"{name}: LIMITCL_MESHES has no {file}")

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Runs the program limitcl on points and faces in memory, by way of PLY files in double."""
+"""Runs the program limitcl on points and faces in memory, by way of files in double."""
 import json
 import os
 import subprocess
 
-from quality_meshes import read_mesh, write_ply
+from quality_meshes import read_mesh, read_ply_polygons, write_obj, write_ply
 
 
 class Limitcl:
@@ -26,6 +26,18 @@ class Limitcl:
         path = os.path.join(self.folder, name)
         write_ply(path, points, faces)
         return path
+
+    def path(self, name):
+        return os.path.join(self.folder, name)
+
+    def polygon_file(self, name, mesh):
+        write_obj(self.path(name), mesh)
+        return self.path(name)
+
+    def polygons(self, *words):
+        """What a command that takes -o gives."""
+        self.run(*words, "-o", self.path("polygons.ply"))
+        return read_ply_polygons(self.path("polygons.ply"))
 
     def denoise(self, points, faces, words):
         """Points and seconds."""
