@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // speed_opensubdiv PART: limit points of all vertices by OpenSubdiv, in float, beside limitcl's apply ("apply": its stencil tables on the shape one level
-// coarser, which bench/run scales), and what it sets up for them beside limitcl's set-up ("refiner": TopologyRefiner; "stencils": limit stencil table).
+// coarser, which bench/run scales; "normals": with normals, the peer's with the two tangents of which they are made), and what it sets up for them beside
+// limitcl's set-up ("refiner": TopologyRefiner; "stencils": limit stencil table); "refine": the shape from one four levels coarser, by TopologyRefiner and
+// PrimvarRefiner.
 #include <opensubdiv/far/primvarRefiner.h>
 #include <opensubdiv/far/stencilTableFactory.h>
 #include <opensubdiv/far/topologyDescriptor.h>
@@ -131,6 +133,57 @@ void race_apply(const Arguments& arguments) {
     print_value("apply.cpu-stencils.error", error_of(coarse, stencils.limit));
 }
 
+/// Largest angle between our normals and the cross products of the peer's tangents, radians.
+double largest_angle(const std::vector<double>& normals, const std::vector<float>& first, const std::vector<float>& second) {
+    double worst = 0;
+    for (std::size_t i = 0; i < normals.size(); i += 3) {
+        const double* n = &normals[i];
+        const float *a = &first[i], *b = &second[i];
+        const double c[] = {double(a[1]) * b[2] - double(a[2]) * b[1], double(a[2]) * b[0] - double(a[0]) * b[2], double(a[0]) * b[1] - double(a[1]) * b[0]};
+        const double sine = std::hypot(c[1] * n[2] - c[2] * n[1], c[2] * n[0] - c[0] * n[2], c[0] * n[1] - c[1] * n[0]);
+        const double angle = std::atan2(sine, c[0] * n[0] + c[1] * n[1] + c[2] * n[2]);
+        if (!(angle <= worst)) worst = angle;
+    }
+    return worst;
+}
+
+void race_normals(const Arguments& arguments) {
+    const Shape shape = quad_sphere(arguments.level);
+    const Refiner refiner = make_refiner(shape);
+    const std::vector<float> points(shape.points.begin(), shape.points.end());
+    std::vector<float> limit(points.size()), first(points.size()), second(points.size());
+    Interpolation problem(open_device(arguments.device), shape, Scheme::catmull_clark);
+    const FieldHandle normals = make_field(problem.A);
+    lcl_tangents handle = nullptr;
+    const MeshHandle mesh = make_mesh(shape);
+    check(lcl_tangents_create(problem.A.get(), mesh.get(), &handle));
+    const limitcl::TangentsHandle tangents(handle);
+    run_rounds(arguments.runs, [&](Laps& laps) {
+        rest();
+        laps.time("normals.create", [&] {
+            check(lcl_tangents_create(problem.A.get(), mesh.get(), &handle));
+            lcl_tangents_release(handle);
+        });
+        laps.time_warm("normals.apply", [&] {
+            check(lcl_operator_apply(problem.A.get(), problem.M.get(), problem.P.get()));
+            problem.finish();
+        });
+        laps.time_warm("normals.limitcl", [&] {
+            check(lcl_tangents_apply(tangents.get(), problem.M.get(), problem.P.get(), normals.get(), nullptr, nullptr));
+            problem.finish();
+        });
+        laps.time_warm("normals.primvar-refiner", [&] {
+            Point* to[] = {reinterpret_cast<Point*>(limit.data()), reinterpret_cast<Point*>(first.data()), reinterpret_cast<Point*>(second.data())};
+            Far::PrimvarRefiner(*refiner).Limit(reinterpret_cast<const Point*>(points.data()), to[0], to[1], to[2]);
+        });
+    });
+    const std::vector<double> ours = problem.control_points();
+    std::vector<double> found(ours.size());
+    check(lcl_field_download(normals.get(), found.data(), LCL_TYPE_DOUBLE, 0));
+    print_value("normals.limitcl.error", error_of(shape, {ours.begin(), ours.end()}));
+    print_value("normals.angle", largest_angle(found, first, second));
+}
+
 void limitcl_setup(const ContextHandle& context, const Shape& shape) {
     const OperatorHandle A = make_operator(context, make_mesh(shape), Scheme::catmull_clark);
     const FieldHandle M = make_field(A);
@@ -147,6 +200,72 @@ void race_refiner(const Arguments& arguments) {
         Refiner refiner;
         laps.time("refiner", [&] { refiner = make_refiner(shape); });
     });
+}
+
+constexpr int refined_levels = 4;
+
+/// Topology of all levels; the last one in full, or with what positions need alone, OpenSubdiv's default.
+Refiner refine_by_opensubdiv(const Shape& shape, bool is_full) {
+    Refiner refiner = make_refiner(shape);
+    Far::TopologyRefiner::UniformOptions options(refined_levels);
+    options.fullTopologyInLastLevel = is_full;
+    refiner->RefineUniform(options);
+    return refiner;
+}
+
+/// Positions of all levels, one after the other; the last ones are the result.
+void interpolate_by_opensubdiv(const Far::TopologyRefiner& refiner, std::vector<Point>& points) {
+    const Far::PrimvarRefiner values(refiner);
+    Point* from = points.data();
+    for (int level = 1; level <= refined_levels; ++level) {
+        Point* const to = from + refiner.GetLevel(level - 1).GetNumVertices();
+        values.Interpolate(level, from, to);
+        from = to;
+    }
+}
+
+void race_refine(const Arguments& arguments) {
+    const Shape shape = quad_sphere(std::max(0, arguments.level - refined_levels));
+    const ContextHandle context = open_device(arguments.device);
+    const MeshHandle mesh = make_mesh(shape);
+    lcl_scheme_options scheme = LCL_SCHEME_OPTIONS_INIT;
+    scheme.scheme = LCL_SCHEME_CATMULL_CLARK;
+    lcl_refine_options levels = LCL_REFINE_OPTIONS_INIT;
+    levels.levels = refined_levels;
+    std::vector<double> ours;
+    std::vector<Point> points;
+    Refiner peer;
+    run_rounds(arguments.runs, [&](Laps& laps) {
+        rest();
+        limitcl::RefinerHandle refiner;
+        const auto apply = [&] { check(lcl_refiner_apply(refiner.get(), shape.points.data(), 0, 3, LCL_PRECISION_SINGLE, ours.data(), 0)); };
+        laps.time("refine.limitcl", [&] {
+            lcl_refiner made = nullptr;
+            check(lcl_refiner_create(context.get(), mesh.get(), &scheme, &levels, &made));
+            refiner = limitcl::RefinerHandle(made);
+            ours.resize(3 * static_cast<std::size_t>(lcl_refiner_vertex_count(made)));
+            apply();
+        });
+        laps.time("refine.limitcl.again", apply);
+        laps.time("refine.limitcl.mesh", [&] {
+            lcl_mesh refined = nullptr;
+            check(lcl_mesh_refine(mesh.get(), &scheme, &levels, &refined));
+            lcl_mesh_release(refined);
+        });
+        laps.time("refine.full", [&] {
+            peer = refine_by_opensubdiv(shape, true);
+            points.resize(peer->GetNumVerticesTotal());
+            for (std::int32_t v = 0; v < shape.vertex_count(); ++v) std::copy_n(&shape.points[3 * v], 3, points[v].x);
+            interpolate_by_opensubdiv(*peer, points);
+        });
+        laps.time("refine.lean", [&] {
+            peer = refine_by_opensubdiv(shape, false);
+            interpolate_by_opensubdiv(*peer, points);
+        });
+        laps.time("refine.again", [&] { interpolate_by_opensubdiv(*peer, points); });
+    });
+    print_value("refine.vertices", static_cast<double>(ours.size() / 3));
+    print_value("refine.from", shape.vertex_count());
 }
 
 /// The table alone, from a TopologyRefiner that is there: as cheap as it gives limit points, and with one refinement as for points inside faces.
@@ -170,8 +289,10 @@ void time_stencils(const Arguments& arguments) {
 
 void run_part(const Arguments& arguments) {
     if (arguments.part == "apply") race_apply(arguments);
+    else if (arguments.part == "normals") race_normals(arguments);
     else if (arguments.part == "refiner") race_refiner(arguments);
     else if (arguments.part == "stencils") time_stencils(arguments);
+    else if (arguments.part == "refine") race_refine(arguments);
     else throw std::runtime_error("'" + arguments.part + "' is not a part");
 }
 

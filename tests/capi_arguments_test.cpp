@@ -41,6 +41,7 @@ TEST_CASE("a missing argument of a mesh function is refused by its name", "[capi
     no_creases.crease_count = no_corners.corner_count = 1;
     lcl_format format = LCL_FORMAT_OBJ;
     double points[18];
+    lcl_refiner refiner = nullptr;
     check_all({
         {"data", [&] { return lcl_mesh_create(nullptr, &made); }},
         {"mesh", [&] { return lcl_mesh_create(&data, nullptr); }},
@@ -95,6 +96,10 @@ TEST_CASE("a missing argument of a mesh function is refused by its name", "[capi
         {"mesh", [&] { return lcl_mesh_refine(nullptr, nullptr, nullptr, &made); }},
         {"refined", [&] { return lcl_mesh_refine(mesh, nullptr, nullptr, nullptr); }},
         {"refined", [&] { return lcl_mesh_get_locations(nullptr, nullptr, nullptr, nullptr); }},
+        {"mesh", [&] { return lcl_refiner_create(nullptr, nullptr, nullptr, nullptr, &refiner); }},
+        {"refiner", [&] { return lcl_refiner_create(nullptr, mesh, nullptr, nullptr, nullptr); }},
+        {"refiner", [&] { return lcl_refiner_get_mesh(nullptr, &made); }},
+        {"refiner", [&] { return lcl_refiner_apply(nullptr, points, 0, 3, LCL_PRECISION_MIXED, points, 0); }},
     });
     CHECK(made == nullptr);
     CHECK(lcl_mesh_property_count(mesh) == 0);

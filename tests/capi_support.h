@@ -24,6 +24,10 @@ struct Release {
     void operator()(lcl_operator handle) const { lcl_operator_release(handle); }
     void operator()(lcl_field handle) const { lcl_field_release(handle); }
     void operator()(lcl_task handle) const { lcl_task_release(handle); }
+    void operator()(lcl_refiner handle) const { lcl_refiner_release(handle); }
+    void operator()(lcl_tangents handle) const { lcl_tangents_release(handle); }
+    void operator()(lcl_limit_surface handle) const { lcl_limit_surface_release(handle); }
+    void operator()(lcl_samples handle) const { lcl_samples_release(handle); }
 };
 template <class Raw>
 using Owned = std::unique_ptr<std::remove_pointer_t<Raw>, Release>;
@@ -32,6 +36,10 @@ using Mesh = Owned<lcl_mesh>;
 using Operator = Owned<lcl_operator>;
 using FieldHandle = Owned<lcl_field>;
 using Task = Owned<lcl_task>;
+using Refiner = Owned<lcl_refiner>;
+using Tangents = Owned<lcl_tangents>;
+using LimitSurface = Owned<lcl_limit_surface>;
+using Samples = Owned<lcl_samples>;
 
 inline bool contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
 

@@ -7,9 +7,9 @@
 
 #include <catch2/catch.hpp>
 
-#include "host/evaluate/reference.h"
 #include "tests/modes_support.h"
 #include "tests/oracle/limit.h"
+#include "tests/patch_checks.h"
 #include "tests/shapes/shapes.h"
 
 using namespace lcl;
@@ -35,7 +35,7 @@ struct Surface {
         topology = build_topology(shape.mesh);
         features = find_features(shape.mesh, topology, shape.features);
         table.point_count = shape.mesh.vertex_count;
-        add_catmull_clark_patches(shape.mesh, topology, features, catmull_clark(alpha), table);
+        add_catmull_clark_patches(topology, features, catmull_clark(alpha), table);
         control = control_points(table, shape.mesh.positions, 3);
     }
 
@@ -221,7 +221,26 @@ TEST_CASE("patches of every kind pass through limit points and have the grid's d
         CAPTURE(shape.name);
         const Surface surface(shape);
         check_positions(surface, 0, 3, 40);
-        for (const int levels : {2, 4}) check_derivatives(surface, 0, levels);
+        check_derivatives(surface, 0, 3);
+    }
+}
+
+TEST_CASE("Catmull-Clark patches deep at their tip are those of the refined mesh", "[evaluate][catmull-clark]") {
+    // Three explicit refinements against three more powers of the kind's step: (u, v) of a face is (8u, 8v) of its child at the first corner.
+    for (const auto& shape : every_kind()) {
+        const Refinement refined = refine(shape.mesh, shape.features, catmull_clark(), 3);
+        const patches::Surface surface(shape, catmull_clark()), fine({shape.name, refined.mesh, refined.features}, catmull_clark());
+        for (Index face = 0; face < shape.mesh.face_count(); ++face) {
+            for (const double scale : {0.1, 1e-3, 1e-6}) {
+                for (const auto& [u, v] : {std::array<double, 2>{0.9, 0.1}, {0.7, 0.8}, {0.2, 0.8}, {0, 0.6}}) {
+                    const patches::Jet whole = surface.jet({face, 0, scale * u, scale * v});
+                    const patches::Jet child = patches::turned(fine.jet({64 * face, 0, 8 * scale * u, 8 * scale * v}), 8, 0, 0, 8);
+                    if (patches::is_same(whole, child, scale)) continue;
+                    CAPTURE(shape.name, face, scale, u, v);
+                    REQUIRE(whole == child);
+                }
+            }
+        }
     }
 }
 
@@ -251,8 +270,7 @@ TEST_CASE("rows of Catmull-Clark patches are affine and use what there is", "[ev
         const Surface surface(shape);
         const PatchTable& table = surface.table;
         const bool all_quads = surface.topology.uniform_degree == 4;
-        CHECK(table.levels == (all_quads ? 1 : 2));
-        CHECK(table.steps.size() == static_cast<std::size_t>(table.levels));
+        CHECK(table.levels() == (all_quads ? 1 : 2));
         CHECK(table.patch_count() == surface.topology.half_edge_count() * (all_quads ? 1 : 4));
         for (const double x : control_points(table, std::vector<double>(table.point_count, 1.0), 1)) REQUIRE(std::abs(x - 1) < 1e-14);
         std::set<std::int32_t> used;

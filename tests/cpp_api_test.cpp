@@ -330,6 +330,19 @@ TEST_CASE("refined vertices keep their numbers and know their places", "[cpp][re
     CHECK(status_of([] { refine(cube(), -1); }) == LCL_ERROR_INVALID_ARGUMENT);
 }
 
+TEST_CASE("a refiner refines points and channels of one mesh again and again", "[cpp][refine]") {
+    const Mesh refined = refine(cube(), 2);
+    const Refiner refiner(Context(), cube(), 2);
+    REQUIRE(refiner.vertex_count() == refined.vertex_count());
+    CHECK(refiner.mesh().points() == refined.points());
+    const std::vector<double> points = refined.points(), found = refiner.apply(cube_points), ones = refiner.apply(std::vector<double>(8 * 5, 1.0), 5);
+    REQUIRE(found.size() == points.size());
+    for (std::size_t i = 0; i < points.size(); ++i) CHECK(std::abs(found[i] - points[i]) <= 1e-14);  // rows of up to 9 weights in two steps
+    CHECK(ones == std::vector<double>(5 * points.size() / 3, 1.0));                                  // constants are the centre, which is kept apart
+    CHECK(status_of([&] { refiner.apply(std::vector<double>(7), 3); }) == LCL_ERROR_INVALID_ARGUMENT);
+    CHECK(status_of([] { Refiner(Context(), cube(), -1); }) == LCL_ERROR_INVALID_ARGUMENT);
+}
+
 TEST_CASE("a mesh goes through a file and through memory", "[cpp][io]") {
     const std::string path = "cpp_api_test.off";
     write_mesh(octahedron(), path);
@@ -388,4 +401,51 @@ TEST_CASE("textures come with their report, and failures of their solves are err
     options.colours.clear();
     scheme.lambda_per_vertex = {0.5};
     CHECK(status_of([&] { return make_texture(context, cube(), options, scheme); }) == LCL_ERROR_INVALID_ARGUMENT);
+}
+
+TEST_CASE("limit surfaces give values and closest points, and samples follow new points", "[cpp][evaluate]") {
+    const Context context;
+    const LimitSurface surface(context, cube(), Scheme::catmull_clark, Precision::full);
+    CHECK(surface.vertex_count() == 8);
+    Places places;
+    places.add(1, 0.5, 0.5);
+    places.add(1, 0, 0);
+    CHECK(places.corners.empty());
+    SurfaceValues values = surface.evaluate(places, Derivatives::second);
+    CHECK(values.points.size() == 6);
+    CHECK(values.normals[2] == Approx(1).margin(1e-14));  // face 1 is the upper one
+    CHECK(values.mean[0] > 0);
+    CHECK(std::isnan(values.gauss[1]));
+    CHECK(surface.evaluate(places).duu.empty());
+    CHECK(surface.evaluate(places, Derivatives::none).du.empty());
+
+    const ClosestPoints closest = surface.closest(std::vector<double>{0.5, 0.5, 3});
+    CHECK(closest.places.faces == std::vector<std::int32_t>{1});
+    CHECK(closest.distances[0] == Approx(3 - values.points[2]));
+    CHECK(largest_difference(closest.points, {values.points[0], values.points[1], values.points[2]}) < 1e-9);
+    CHECK(closest.normals[2] == Approx(1));
+
+    const Samples samples(surface, places);
+    CHECK(samples.size() == 2);
+    LimitSurface same = surface;
+    same.set_points(scaled(cube_points, 2));
+    CHECK(largest_difference(samples.evaluate(Derivatives::none).points, scaled(values.points, 2)) < 1e-14);
+
+    // Where refined vertices lie, they are evaluated.
+    const SchemeOptions loop(Scheme::loop);
+    const Mesh refined = refine(octahedron(), 2, loop);
+    const std::vector<double> limits = LimitOperator(context, refined, loop).limit_points(refined.points(), 3, Precision::full);
+    const SurfaceValues there = LimitSurface(context, octahedron(), loop, Precision::full).evaluate(locations(refined), Derivatives::none);
+    CHECK(largest_difference(there.points, limits) < 1e-14);
+
+    places.add(1, 0.25, 0.25, 2);
+    CHECK(places.corners == std::vector<std::int32_t>{0, 0, 2});
+    CHECK(status_of([&] { surface.evaluate(places); }) == LCL_ERROR_BAD_INPUT);  // quads have corner 0 alone
+    places.uv.pop_back();
+    CHECK(status_of([&] { surface.evaluate(places); }) == LCL_ERROR_INVALID_ARGUMENT);
+    CHECK(status_of([&] { same.set_points(octahedron_points); }) == LCL_ERROR_INVALID_ARGUMENT);
+    CHECK(status_of([&] { surface.closest(std::vector<double>{1, 2}); }) == LCL_ERROR_INVALID_ARGUMENT);
+    SchemeOptions two_phase(Scheme::catmull_clark);
+    two_phase.lambda = 0.3;
+    CHECK(status_of([&] { LimitSurface(context, cube(), two_phase); }) == LCL_ERROR_INVALID_ARGUMENT);
 }

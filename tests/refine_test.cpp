@@ -447,7 +447,7 @@ TEST_CASE("the size of a refined mesh is foretold", "[refine]") {
         for (const SchemeOptions& options : options_for(shape))
             for (const int levels : {0, 1, 3}) {
                 const Topology topology = build_topology(shape.mesh);
-                const RefinedSize size = refined_size(shape.mesh, topology, find_features(shape.mesh, topology, shape.features), options, levels);
+                const RefinedSize size = refined_size(topology, find_features(shape.mesh, topology, shape.features), options, levels);
                 const PolygonMesh refined = refine(shape.mesh, shape.features, options, levels).mesh;
                 INFO(shape.name << ", " << levels << " levels");
                 CHECK(size.vertices == refined.vertex_count);

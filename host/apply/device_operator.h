@@ -97,6 +97,15 @@ public:
     /// p = r + beta p.
     void cg_direction(const ChannelValues& beta, const Field& r, Field& p, const Part& part);
 
+    /// Sweeps all rows by a kernel of kernels/`file`.cl that takes first_block and LCL_STENCILS before `arguments`, for fields of one channel block like
+    /// `like`.
+    template <class... Arguments>
+    void launch_over_rows(const char* file, const char* name, const Field& like, const Arguments&... arguments) {
+        const Part all = plan_->all_rows();
+        launch(*context_, kernel(file, name, like, 0), size(all), all.first_block, blocks_, runs_, weights(like.real(), false), indices_, weighted_offsets_,
+               weighted_indices_, weights(like.real(), true), arguments...);
+    }
+
 private:
     struct ScheduleArrays {
         Buffer rows, offsets, columns, weights, inverse_diagonal;

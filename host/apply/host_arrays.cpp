@@ -36,4 +36,25 @@ void limit_points(DeviceOperator& A, const double* points, std::size_t stride, i
     restore_rows(plan, kept, channels, out, out_stride);
 }
 
+void limit_normals(DeviceOperator& A, DeviceTangents& tangents, const double* points, std::size_t stride, Precision precision, double* out,
+                   std::size_t out_stride, double* normals, std::size_t normal_stride) {
+    constexpr int channels = 3;
+    const Plan& plan = A.plan();
+    const Transform transform = fit_transform(plan, points, stride, channels);
+    Field x = A.make_field(channels, real_of(precision)), n = A.make_field(channels, real_of(precision));
+    upload_rows(plan, transform, {points, stride}, x);
+    n.fill_zero();
+    if (out == nullptr) {
+        tangents.normals(x, nullptr, n);
+    } else {
+        Field y = A.make_field(channels, real_of(precision));
+        if (plan.row_count < plan.vertex_count) y.copy_from(x);
+        tangents.normals(x, &y, n);
+        const std::vector<double> kept = kept_rows(plan, points, stride, channels);
+        download_rows(plan, transform, y, {out, out_stride});
+        restore_rows(plan, kept, channels, out, out_stride);
+    }
+    download_rows(plan, unscaled(channels), n, {normals, normal_stride});
+}
+
 }  // namespace lcl

@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "host/apply/device_operator.h"
+#include "host/apply/device_tangents.h"
 
 namespace lcl {
 
@@ -20,5 +20,9 @@ void restore_rows(const Plan& plan, const std::vector<double>& kept, int channel
 /// out = A points. points, out: vertex_count rows of `channels`, stride apart, in the caller's order; out may be points. Ghosts keep their values. BadInput as
 /// fit_transform.
 void limit_points(DeviceOperator& A, const double* points, std::size_t stride, int channels, Precision precision, double* out, std::size_t out_stride);
+
+/// The same with unit normals; out (rows out_stride apart) may be null. Three channels. Normals of ghosts are 0.
+void limit_normals(DeviceOperator& A, DeviceTangents& tangents, const double* points, std::size_t stride, Precision precision, double* out,
+                   std::size_t out_stride, double* normals, std::size_t normal_stride);
 
 }  // namespace lcl

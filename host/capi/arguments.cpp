@@ -31,4 +31,10 @@ void check_same_operator(lcl_operator A, std::initializer_list<lcl_field> fields
     }
 }
 
+void set_transform(lcl_field y, const Transform& transform, bool all_rows_are_written) {
+    if (y->transform && !all_rows_are_written && !same(*y->transform, transform))
+        throw InvalidArgument("only some rows of y are written, and the others are kept in another centre and scale: use lcl_field_match before");
+    y->transform = transform;
+}
+
 }  // namespace lcl

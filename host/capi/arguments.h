@@ -23,4 +23,7 @@ const Transform& transform_of(lcl_field field, const char* name);
 /// Fields of A, of one shape and type; null ones are left out.
 void check_same_operator(lcl_operator A, std::initializer_list<lcl_field> fields);
 
+/// y gets values in this centre and scale; where only some of its rows are written, the others must be in it already (or hold nothing yet).
+void set_transform(lcl_field y, const Transform& transform, bool all_rows_are_written);
+
 }  // namespace lcl

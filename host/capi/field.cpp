@@ -50,13 +50,6 @@ void for_each_stretch(const RowList& list, const Body& body) {
     }
 }
 
-/// y gets values in this centre and scale; where only some of its rows are written, the others must be in it already (or hold nothing yet).
-void set_transform(lcl_field y, const Transform& transform, bool all_rows_are_written) {
-    if (y->transform && !all_rows_are_written && !same(*y->transform, transform))
-        throw InvalidArgument("only some rows of y are written, and the others are kept in another centre and scale: use lcl_field_match before");
-    y->transform = transform;
-}
-
 }  // namespace
 
 extern "C" {

@@ -9,10 +9,12 @@
 #include <mutex>
 #include <optional>
 
+#include "host/apply/device_tangents.h"
 #include "host/capi/guard.h"
 #include "host/field/field.h"
 #include "host/io/mesh_file.h"
-#include "host/refine/refine.h"
+#include "host/refine/device_refiner.h"
+#include "host/refine/refiner.h"
 #include "host/solve/local.h"
 
 namespace lcl {
@@ -43,6 +45,23 @@ Reference<Handle> share(Handle* handle) {
     return Reference<Handle>(retain(handle));
 }
 
+/// Where the vertices of a refined mesh lie: found when they are asked for.
+class RefinedLocations {
+public:
+    explicit RefinedLocations(std::shared_ptr<const Refiner> refiner) : refiner_(std::move(refiner)) {}
+    const std::vector<SurfaceLocation>& get() {
+        const std::lock_guard lock(mutex_);  // several threads may read one mesh
+        if (refiner_) locations_ = refiner_->locations();
+        refiner_.reset();
+        return locations_;
+    }
+
+private:
+    std::mutex mutex_;
+    std::shared_ptr<const Refiner> refiner_;
+    std::vector<SurfaceLocation> locations_;
+};
+
 }  // namespace lcl
 
 struct lcl_context_s : lcl::Counted {
@@ -60,7 +79,9 @@ struct lcl_mesh_s : lcl::Counted {
     lcl::MeshFile file;
     lcl::FeatureOptions feature_options;  // the file's tags and what callers added; boundary resolved by boundary_rule()
     lcl_boundary boundary = LCL_BOUNDARY_DEFAULT;
-    std::vector<lcl::SurfaceLocation> locations;  // of a refined mesh
+    std::shared_ptr<lcl::RefinedLocations> locations;  // of a refined mesh
+    lcl::Index two_phase_vertices = -1;           // of a two-phase mesh: how many vertices the mesh had that it was made from
+    bool was_read_with_normals = false;
     std::map<lcl_note, std::vector<std::string>> notes;
 
     /// Topology and features of a sound mesh, built once; BadInput with the reason if it is not sound, or if the file had a tag that is refused.
@@ -101,6 +122,14 @@ struct lcl_field_s : lcl::Counted {
     lcl_field_s(lcl_operator_s* owner, lcl::Field values) : A(lcl::share(owner)), field(std::move(values)) {}
 };
 
+struct lcl_tangents_s : lcl::Counted {
+    lcl::Reference<lcl_operator_s> A;
+    lcl::DeviceTangents tangents;
+    bool is_applied = false;
+
+    lcl_tangents_s(lcl_operator_s* owner, lcl::TangentPlan&& plan) : A(lcl::share(owner)), tangents(*owner->system->A, std::move(plan)) {}
+};
+
 struct lcl_task_s : lcl::Counted {
     struct Result {
         lcl_status status;
@@ -112,6 +141,13 @@ struct lcl_task_s : lcl::Counted {
     ~lcl_task_s() {
         if (result.valid()) result.wait();
     }
+};
+
+struct lcl_refiner_s : lcl::Counted {
+    lcl::Reference<lcl_mesh_s> mesh;
+    std::shared_ptr<const lcl::Refiner> refiner;
+    lcl::Reference<lcl_context_s> context;
+    std::unique_ptr<lcl::DeviceRefiner> on_device;  // null without a context
 };
 
 namespace lcl {
@@ -127,6 +163,12 @@ std::unique_ptr<LimitSystem> make_system(lcl_context_s& context, lcl_mesh_s& mes
 std::unique_ptr<lcl_mesh_s> make_refined_mesh(const lcl_mesh_s& mesh, Refinement&& refined, int levels);
 /// Values of integer types, of which refinement makes fractions, are rounded.
 void round_integers(std::vector<VertexProperty>& properties);
+
+/// Checked options of a solve, but for warm_start.
+SolveOptions solve_options(const lcl_solve_options& options);
+
+/// Fills the report (which may be null), but neither asks whether the solve went well nor keeps a sentence.
+void give_report(lcl_solve_report* report, const SolveReport& inner);
 
 /// Fills the report (which may be null) and gives the status of a solve, whose sentence becomes the thread's last error where it failed.
 lcl_status conclude(const SolveReport& inner, const lcl_solve_options& options, lcl_solve_report* report);

@@ -83,6 +83,8 @@ void lcl_mesh_s::keep_features_of_positions() {
 
 void lcl_mesh_s::forget_positions() {
     file.normals.clear();
+    file.given_normals.clear();
+    was_read_with_normals = false;
     const std::lock_guard<std::mutex> lock(mutex_);
     defects_.reset();
     if (!positions_are_finite(file.mesh)) topology_.reset();  // no longer sound
@@ -106,6 +108,12 @@ lcl_mesh adopt(MeshFile file) {
     if (!file.tags.refused.empty()) mesh->notes[LCL_NOTE_REFUSED_TAG] = {file.tags.refused};
     mesh->file = std::move(file);
     return mesh.release();
+}
+
+lcl_mesh adopt_with_normals(MeshFile file) {
+    lcl_mesh const mesh = adopt(std::move(file));
+    mesh->was_read_with_normals = true;
+    return mesh;
 }
 
 FileFormat inner_format(lcl_format format) {
@@ -286,6 +294,35 @@ lcl_status lcl_mesh_read_memory(const void* bytes, size_t size, lcl_format forma
     });
 }
 
+lcl_status lcl_mesh_read_with_normals(const char* path, lcl_format format, lcl_mesh* mesh) {
+    return guarded([&] {
+        required(mesh, "mesh");
+        *mesh = adopt_with_normals(read_mesh(required(path, "path"), inner_format(format), true));
+        return LCL_OK;
+    });
+}
+
+lcl_status lcl_mesh_read_memory_with_normals(const void* bytes, size_t size, lcl_format format, const char* name, lcl_mesh* mesh) {
+    return guarded([&] {
+        required(mesh, "mesh");
+        if (size > 0) required(bytes, "bytes");
+        *mesh = adopt_with_normals(read_mesh_memory(static_cast<const char*>(bytes), size, inner_format(format), name ? name : "memory", true));
+        return LCL_OK;
+    });
+}
+
+lcl_status lcl_mesh_get_normals(lcl_mesh mesh, double* normals) {
+    return guarded([&] {
+        if (!required(mesh, "mesh")->was_read_with_normals)
+            throw InvalidArgument("this mesh was not read with its normals, or its points have changed since: use lcl_mesh_read_with_normals");
+        const std::vector<double>& given = mesh->file.given_normals;
+        if (given.empty() && mesh->file.mesh.vertex_count > 0)
+            throw BadInput("the file holds no normals of vertices (OBJ vn, PLY nx ny nz, OFF with N): give them in another way");
+        std::copy(given.begin(), given.end(), required(normals, "normals"));
+        return LCL_OK;
+    });
+}
+
 lcl_status lcl_mesh_write(lcl_mesh mesh, const char* path, lcl_format format) {
     return guarded([&] {
         required(mesh, "mesh");
@@ -312,6 +349,8 @@ lcl_status lcl_mesh_copy(lcl_mesh mesh, lcl_mesh* copy) {
         out->feature_options = mesh->feature_options;
         out->boundary = mesh->boundary;
         out->locations = mesh->locations;
+        out->was_read_with_normals = mesh->was_read_with_normals;
+        out->two_phase_vertices = mesh->two_phase_vertices;
         out->notes = mesh->notes;
         if (out->feature_options.crease_angle_degrees > 0) {  // found on these points, not on those that the copy may get
             out->feature_options.creases = crease_edges(mesh->topology(), mesh->features());

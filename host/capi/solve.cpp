@@ -8,9 +8,7 @@
 
 using namespace lcl;
 
-namespace {
-
-void fill(lcl_solve_report* report, const SolveReport& inner) {
+void lcl::give_report(lcl_solve_report* report, const SolveReport& inner) {
     if (report == nullptr) return;
     lcl_solve_report out = options_or(report, LCL_SOLVE_REPORT_INIT, "report");
     out.solver = static_cast<lcl_solver>(inner.solver);
@@ -31,10 +29,8 @@ void fill(lcl_solve_report* report, const SolveReport& inner) {
     give(report, out, "report");
 }
 
-}  // namespace
-
 lcl_status lcl::conclude(const SolveReport& inner, const lcl_solve_options& options, lcl_solve_report* report) {
-    fill(report, inner);
+    give_report(report, inner);
     if (inner.status == SolveStatus::converged || (inner.status == SolveStatus::not_converged && options.exact_sweeps > 0)) return LCL_OK;
     last_error() = {inner.message, {inner.vertices, {}}};
     switch (inner.status) {
@@ -44,11 +40,7 @@ lcl_status lcl::conclude(const SolveReport& inner, const lcl_solve_options& opti
     }
 }
 
-namespace {
-
-constexpr double isolated_range = 1e37;  // as in to_plan_order: isolated vertices may be anywhere
-
-SolveOptions inner_options(const lcl_solve_options& given) {
+SolveOptions lcl::solve_options(const lcl_solve_options& given) {
     if (given.solver < LCL_SOLVER_AUTO || given.solver > LCL_SOLVER_CG)
         throw InvalidArgument("options.solver is " + std::to_string(given.solver) + ", it goes from 0 to 7");
     if (!(given.tolerance >= 0)) throw InvalidArgument("options.tolerance is " + std::to_string(given.tolerance) + ", it is above 0");
@@ -73,6 +65,10 @@ SolveOptions inner_options(const lcl_solve_options& given) {
     return options;
 }
 
+namespace {
+
+constexpr double isolated_range = 1e37;  // as in to_plan_order: isolated vertices may be anywhere
+
 lcl_status interpolate(lcl_operator A, const double* M, std::size_t stride, int32_t channels, const lcl_solve_options& given, double* P, std::size_t P_stride,
                        lcl_solve_report* report) {
     LimitSystem& system = *required(A, "A")->system;
@@ -84,7 +80,7 @@ lcl_status interpolate(lcl_operator A, const double* M, std::size_t stride, int3
     required(M, "M");
     required(P, "P");
     if (given.warm_start != 0) require_finite(P, P_stride, channels, system.plan().vertex_count, "P");
-    return conclude(solve_host(system, M, stride, channels, inner_options(given), given.warm_start != 0, P, P_stride), given, report);
+    return conclude(solve_host(system, M, stride, channels, solve_options(given), given.warm_start != 0, P, P_stride), given, report);
 }
 
 /// M and P of one operator, M with values, alike.
@@ -102,7 +98,7 @@ void check_start(const lcl_field_s& M, const lcl_field_s& P) {
 }
 
 SolveOptions field_options(const lcl_field_s& M, const lcl_solve_options& given) {
-    SolveOptions options = inner_options(given);
+    SolveOptions options = solve_options(given);
     if (M.field.real() == Real::full) options.precision = Precision::full;
     else if (options.precision == Precision::full)
         throw InvalidArgument("the fields hold floats, and double precision was asked for: create them with LCL_PRECISION_DOUBLE");

@@ -17,7 +17,7 @@ PatchTable table_of(lcl_mesh_s& mesh, const lcl_scheme_options& options) {
     if (options.subset != nullptr || options.owned != nullptr) throw InvalidArgument("subset and owned belong to operators: leave them out");
     const Objection objection = scheme_objection(mesh.topology(), scheme);
     if (!objection.message.empty()) throw BadInput(objection.message, {objection.vertices, objection.faces});
-    return build_patch_table(mesh.file.mesh, mesh.topology(), mesh.features(), scheme);
+    return build_patch_table(mesh.topology(), mesh.features(), scheme);
 }
 
 Places places_of(size_t count, const int32_t* faces, const int32_t* corners, const double* uv) {

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <functional>
 #include <optional>
 
 #include "host/cli/channels.h"
@@ -11,6 +12,7 @@
 #include "host/cli/option_names.h"
 #include "host/cli/scheme_choice.h"
 #include "host/cli/solve_step.h"
+#include "host/cli/two_phase_step.h"
 
 namespace lcl::cli {
 
@@ -39,13 +41,14 @@ lcl_solve_options solve_options(const Options& options, SolveProgress& state) {
     return solve;
 }
 
-/// The library builds kernels at their first use, somewhere in a call of `elapsed` seconds: `compiled` of them, taken off its parts in proportion.
-void note_seconds(Seconds& seconds, const lcl_solve_report& report, double elapsed, double compiled) {
+/// The library builds kernels at their first use, somewhere in a call of `elapsed` seconds: `compiled` of them, taken off its parts in proportion. `further`: of
+/// what follows the solve.
+void note_seconds(Seconds& seconds, const lcl_solve_report& report, double further, double elapsed, double compiled) {
     const double all = elapsed - report.seconds_download;
     const double rest = all > compiled ? 1.0 - compiled / all : 0.0;
     add_seconds(seconds.compile, compiled);
     add_seconds(seconds.upload, report.seconds_upload * rest);
-    add_seconds(seconds.solve, report.seconds_solve * rest);
+    add_seconds(seconds.solve, (report.seconds_solve + further) * rest);
     add_seconds(seconds.download, report.seconds_download);
 }
 
@@ -58,8 +61,11 @@ lcl_status interpolate(lcl_operator A, lcl_mesh mesh, const std::vector<std::str
     return status;
 }
 
-/// The same, with what the report says of it; the status is LCL_OK or one of the three results.
-lcl_status solve(Job& job, lcl_context context, lcl_operator A, lcl_mesh mesh, const std::vector<std::string>& channels) {
+/// A call of the library that solves.
+using SolveCall = std::function<lcl_status(const lcl_solve_options&, lcl_solve_report&)>;
+
+/// Runs it, with what the report says of it; the status is LCL_OK or one of the three results.
+lcl_status solve(Job& job, lcl_context context, const SolveCall& call) {
     SolveProgress state{&job.terminal.progress(), job.options.sweeps};
     const lcl_solve_options options = solve_options(job.options, state);
     std::vector<double> residuals = residual_space(std::max(options.max_iterations, options.exact_sweeps));
@@ -70,12 +76,12 @@ lcl_status solve(Job& job, lcl_context context, lcl_operator A, lcl_mesh mesh, c
     check_interrupt();
     job.terminal.progress().begin("solving");
     const auto start = std::chrono::steady_clock::now();
-    const lcl_status status = interpolate(A, mesh, channels, options, report);
+    const lcl_status status = call(options, report);
     const double elapsed = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     job.terminal.progress().end();
-    if (status != LCL_OK && !is_result(status)) throw failure_of(status);
+    if (status != LCL_OK && !is_result(status)) throw two_phase_failure(job, status);
     note_solve(job, report, std::move(residuals));
-    note_seconds(job.report.seconds, report, elapsed, lcl_context_compile_seconds(context) - compiled);
+    note_seconds(job.report.seconds, report, job.report.two_phase ? job.report.two_phase->seconds : 0.0, elapsed, lcl_context_compile_seconds(context) - compiled);
     return status;
 }
 
@@ -115,22 +121,48 @@ void warn_if_all_fixed(Job& job) {
         "every vertex is a corner or isolated, so the mesh is its own control mesh: if its faces should hang together, weld vertices at equal positions first");
 }
 
+lcl_status solve_two_phase(Job& job, lcl_context context, lcl_operator A, lcl_mesh mesh, const TwoPhaseChoice& choice, Mesh& refined) {
+    return solve(job, context, [&](const lcl_solve_options& options, lcl_solve_report& report) {
+        lcl_two_phase_report findings = LCL_TWO_PHASE_REPORT_INIT;
+        lcl_mesh handle = nullptr;
+        const lcl_status status = lcl_two_phase_mesh(A, mesh, &options, &choice.options, &handle, &report, &findings);
+        refined.reset(handle);
+        if (refined) note_two_phase(job, findings);
+        return status;
+    });
+}
+
+void finish_refined(Job& job, lcl_mesh refined) {
+    const lcl_solve_report& report = job.report.solve->report;
+    if (!report.converged && job.options.sweeps == 0 && report.message[0] != '\0') warn(job, std::string(report.message) + " (all vertices are met all the same)");
+    say_two_phase(job, refined);
+    write_output(job, refined);
+    if (!job.options.map_file.empty()) write_vertex_map(job, refined);
+}
+
 }  // namespace
 
 void run_interpolate(Job& job) {
     DeviceOpening device(job);
     const Mesh mesh = read_sound_input(job);
-    check_output_format(job, mesh.get());
+    if (!makes_refined_mesh(job.options)) check_output_format(job, mesh.get());
     note_solve_parameters(job);
     const SchemeChoice scheme = choose_scheme(job, mesh.get());
     const std::vector<std::string> channels = choose_channels(job, mesh.get());
+    const bool makes_refined = makes_refined_mesh(job.options);
+    TwoPhaseChoice two_phase;
+    if (makes_refined) two_phase = choose_two_phase(job, mesh.get(), scheme, channels);
     const Context context = device.finish();
     const Operator A = make_operator(job, context.get(), mesh.get(), scheme.options);
     note_scheme_in_use(job, A.get());
     say_scheme(job);
 
     warn_if_all_fixed(job);
-    const lcl_status status = solve(job, context.get(), A.get(), mesh.get(), channels);
+    Mesh refined;
+    const lcl_status status = makes_refined ? solve_two_phase(job, context.get(), A.get(), mesh.get(), two_phase, refined)
+                                            : solve(job, context.get(), [&](const lcl_solve_options& options, lcl_solve_report& report) {
+                                                  return interpolate(A.get(), mesh.get(), channels, options, report);
+                                              });
     std::optional<Failure> failure;
     if (status != LCL_OK) failure = failure_of_result(status, job.report.solve->report);
     const bool was_solved = (status != LCL_ERROR_SINGULAR && status != LCL_ERROR_INDEFINITE) || job.options.keep_going || job.options.sweeps > 0;
@@ -141,7 +173,8 @@ void run_interpolate(Job& job) {
         failure.reset();
     }
     if (failure && !job.options.keep_going) throw *failure;
-    write_output(job, mesh.get());
+    if (refined) finish_refined(job, refined.get());
+    else write_output(job, mesh.get());
     if (failure) throw *failure;
 }
 

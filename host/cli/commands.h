@@ -18,5 +18,7 @@ void run_denoise(Job& job);
 void run_sharpen(Job& job);
 void run_morph(Job& job);
 void run_texture(Job& job);
+void run_evaluate(Job& job);
+void run_closest(Job& job);
 
 }  // namespace lcl::cli

@@ -5,65 +5,17 @@
 #include <charconv>
 #include <cmath>
 #include <cstring>
-#include <filesystem>
-#include <fstream>
 #include <optional>
 #include <string_view>
 
 #include <unistd.h>
 
 #include "host/cli/failure.h"
+#include "host/cli/text_lines.h"
 
 namespace lcl::cli {
 
 namespace {
-
-std::string_view trimmed(std::string_view text) {
-    const char* blanks = " \t\r";
-    const std::size_t first = text.find_first_not_of(blanks);
-    if (first == std::string_view::npos) return {};
-    return text.substr(first, text.find_last_not_of(blanks) - first + 1);
-}
-
-std::vector<std::string_view> cells_of(std::string_view line) {
-    std::vector<std::string_view> cells;
-    for (;;) {
-        const std::size_t comma = line.find(',');
-        cells.push_back(trimmed(line.substr(0, comma)));
-        if (comma == std::string_view::npos) return cells;
-        line.remove_prefix(comma + 1);
-    }
-}
-
-std::vector<std::string_view> words_of(std::string_view line) {
-    std::vector<std::string_view> words;
-    for (line = trimmed(line); !line.empty(); line = trimmed(line)) {
-        const std::size_t length = std::min(line.find_first_of(" \t"), line.size());
-        words.push_back(line.substr(0, length));
-        line.remove_prefix(length);
-    }
-    return words;
-}
-
-template <typename Value>
-std::optional<Value> parsed(std::string_view text) {
-    Value value{};
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-    if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
-    return value;
-}
-
-/// Calls use(line, line number) for every line that is not blank.
-template <typename Use>
-void for_each_line(const std::string& path, Use use) {
-    std::ifstream file(path);
-    if (!file || std::filesystem::is_directory(path)) fail(exit_bad_input, path + ": cannot be opened: check the name");
-    std::string line;
-    for (int number = 1; std::getline(file, line); ++number) {
-        if (!trimmed(line).empty()) use(std::string_view(line), number);
-    }
-    if (file.bad()) fail(exit_bad_input, path + ": cannot be read");
-}
 
 std::int32_t to_vertex(const std::string& path, int line, std::string_view word, std::int32_t vertex_count) {
     const std::optional<std::int64_t> vertex = parsed<std::int64_t>(word);

@@ -50,12 +50,15 @@ std::vector<char> standard_input() {
 
 Mesh read_mesh(Job& job, const std::string& path) {
     const Phase phase(job, &Seconds::read, "reading " + shown_name(path));
+    const bool with_normals = job.options.normals == "mesh";
     lcl_mesh mesh = nullptr;
     if (path != "-") {
-        check(lcl_mesh_read(path.c_str(), LCL_FORMAT_BY_ENDING, &mesh));
+        const auto read = with_normals ? lcl_mesh_read_with_normals : lcl_mesh_read;
+        check(read(path.c_str(), LCL_FORMAT_BY_ENDING, &mesh));
     } else {
         const std::vector<char> bytes = standard_input();
-        check(lcl_mesh_read_memory(bytes.data(), bytes.size(), job.options.format, "standard input", &mesh));
+        const auto read = with_normals ? lcl_mesh_read_memory_with_normals : lcl_mesh_read_memory;
+        check(read(bytes.data(), bytes.size(), job.options.format, "standard input", &mesh));
     }
     return Mesh(mesh);
 }
@@ -233,7 +236,7 @@ Operator make_operator(Job& job, lcl_context context, lcl_mesh mesh, const lcl_s
 }
 
 void write_output(Job& job, lcl_mesh mesh) {
-    const std::string shown = job.options.output == "-" ? "standard output" : job.options.output;
+    const std::string shown = shown_output(job.options);
     {
         const Phase phase(job, &Seconds::write, "writing " + shown);
         check(lcl_mesh_write(mesh, job.options.output.c_str(), job.options.output == "-" ? job.options.format : LCL_FORMAT_BY_ENDING));
@@ -246,6 +249,8 @@ void write_output(Job& job, lcl_mesh mesh) {
 std::string shown_name(const std::string& path) { return path == "-" ? "standard input" : path; }
 
 std::string shown_input(const Options& options) { return shown_name(options.input); }
+
+std::string shown_output(const Options& options) { return options.output == "-" ? "standard output" : options.output; }
 
 void say_seconds(Job& job) {
     const Seconds& seconds = job.report.seconds;

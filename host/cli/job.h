@@ -94,6 +94,8 @@ void write_output(Job& job, lcl_mesh mesh);
 /// Name of a file that is read, for people: standard input has no name.
 std::string shown_name(const std::string& path);
 std::string shown_input(const Options& options);
+/// OUT, for people.
+std::string shown_output(const Options& options);
 /// The line of the seconds by phase.
 void say_seconds(Job& job);
 

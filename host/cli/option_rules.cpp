@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "host/cli/failure.h"
+#include "host/cli/points.h"
 
 namespace lcl::cli {
 
@@ -24,8 +25,11 @@ void choose_scheme(Options& options) {
     options.scheme = LCL_SCHEME_DOO_SABIN;
 }
 
+bool is_of_surface(const Options& options) { return options.command == "evaluate" || options.command == "closest"; }
+bool writes_table(const Options& options) { return options.command == "spectrum" || is_of_surface(options); }
+
 void check_streams(const Options& options) {
-    const bool mesh_to_output = options.output == "-" && options.command != "spectrum";
+    const bool mesh_to_output = options.output == "-" && !writes_table(options);
     const bool streams = options.input == "-" || options.target == "-" || mesh_to_output;
     if (streams && !options.has("--format")) fail(exit_usage, "standard input and output have no ending: give --format obj, off, ply, stl or om");
     if (!streams && options.has("--format")) fail(exit_usage, "--format is for standard input and output; a file's ending names its format");
@@ -34,7 +38,7 @@ void check_streams(const Options& options) {
 }
 
 void check_endings(const Options& options) {
-    for (const std::string& path : {options.input, options.target, options.command == "spectrum" ? std::string() : options.output}) {
+    for (const std::string& path : {options.input, options.target, writes_table(options) ? std::string() : options.output}) {
         lcl_format format = LCL_FORMAT_BY_ENDING;
         if (!path.empty() && path != "-" && lcl_format_of_path(path.c_str(), &format) != LCL_OK) fail(exit_usage, lcl_last_error());
     }
@@ -47,6 +51,26 @@ void check_report_name(const Options& options) {
         for (int frame = 0; frame <= options.frames && !replaces; ++frame) replaces = options.report == options.frame_pattern.name(frame);
     }
     if (replaces) fail(exit_usage, "the report would replace another output, '" + options.report + "': give --report another name");
+}
+
+/// What makes the output the refined mesh of the two-phase scheme, or nothing.
+const char* refined_option(const Options& options) {
+    for (const char* flag : {"--refined", "--normals", "--handles", "--fair"})
+        if (options.has(flag)) return flag;
+    return nullptr;
+}
+
+void check_interpolate(const Options& options) {
+    const char* const flag = refined_option(options);
+    if (flag == nullptr && !options.map_file.empty())
+        fail(exit_usage, "--map names the vertices of the refined mesh of the two-phase scheme: add --refined and --lambda, or leave it out");
+    if (flag == nullptr) return;
+    const bool has_ratio = options.has("--lambda") && (!options.lambda_file.empty() || (options.lambda > 0.0 && options.lambda < 1.0));
+    if (!has_ratio) fail(exit_usage, std::string(flag) + " is of the two-phase scheme and needs --lambda L with a blend ratio above 0 and below 1, such as 0.33");
+    lcl_format format = options.format;
+    if (options.output != "-") lcl_format_of_path(options.output.c_str(), &format);
+    if (format == LCL_FORMAT_STL)
+        fail(exit_usage, std::string("STL holds triangles only, and with ") + flag + " the output is a refined mesh of quads: write to .obj, .off, .ply or .om");
 }
 
 void check_refine(const Options& options) {
@@ -64,6 +88,18 @@ void check_expand(const Options& options) {
 void check_spectrum(const Options& options) {
     const bool known = options.output.empty() || options.output == "-" || has_ending(options.output, ".csv") || has_ending(options.output, ".svg");
     if (!known) fail(exit_usage, "'" + options.output + "': a spectrum is written to .csv or .svg");
+}
+
+/// evaluate and closest.
+void check_surface(const Options& options) {
+    if (options.has("--lambda"))
+        fail(exit_usage,
+             "--lambda: the surface of a two-phase mesh is that of the refined mesh that interpolate --refined writes: give that as IN, without --lambda");
+    if (options.output != "-" && !has_ending(options.output, ".csv")) fail(exit_usage, "'" + options.output + "': the table is written to .csv");
+    if (options.places_file == "-" || options.points_file == "-")
+        fail(exit_usage, std::string(options.command == "evaluate" ? "--at" : "--points") + " needs a file's name");
+    if (options.command == "closest" && !is_points_name(options.points_file))
+        fail(exit_usage, "'" + options.points_file + "': points are read from .ply .xyz .csv .off .obj .pts, each also with .gz");
 }
 
 void check_denoise(const Options& options) {
@@ -105,9 +141,11 @@ void apply_rules(Options& options) {
     check_endings(options);
     check_report_name(options);
     if (!options.map_file.empty() && options.map_file == options.output) fail(exit_usage, "--map would replace the mesh: give it another name");
+    if (options.command == "interpolate") check_interpolate(options);
     if (options.command == "refine") check_refine(options);
     if (options.command == "expand") check_expand(options);
     if (options.command == "spectrum") check_spectrum(options);
+    if (is_of_surface(options)) check_surface(options);
     if (options.command == "denoise") check_denoise(options);
     if (options.command == "texture") check_texture(options);
 }

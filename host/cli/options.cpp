@@ -23,7 +23,7 @@ namespace lcl::cli {
 
 namespace {
 
-const std::array<const char*, 3> later_commands = {"evaluate", "closest", "surface"};
+const std::array<const char*, 1> later_commands = {"surface"};
 
 constexpr const char* scheme_group = "Scheme and sharp features";
 constexpr const char* solve_group = "Values and solving";
@@ -73,6 +73,22 @@ void set_lambda(Options& options, const std::string& text) {
     if (lambda && !is_fraction(*lambda)) throw CLI::ValidationError("--lambda", "'" + text + "' is not between 0 and 1");
     if (lambda) options.lambda = *lambda;
     else options.lambda_file = text;
+}
+
+/// Two numbers, or else a file's name.
+void set_handles(Options& options, const std::string& text) {
+    const std::size_t comma = text.find(',');
+    const std::string parts[2] = {text.substr(0, comma), comma == std::string::npos ? "" : text.substr(comma + 1)};
+    const bool is_file = !to_number(parts[0]) && !to_number(parts[1]);
+    if (is_file) {
+        options.handles_file = text;
+        return;
+    }
+    for (std::size_t i = 0; i < 2; ++i) {
+        options.handles[i] = to_number(parts[i]).value_or(0.0);
+        if (!(options.handles[i] > 0.0) || !std::isfinite(options.handles[i]))
+            throw CLI::ValidationError("--handles", "'" + text + "' is neither two numbers above 0, S1,S2, nor a file");
+    }
 }
 
 CLI::Validator positive_number() {
@@ -142,8 +158,9 @@ private:
     void add_sharpen();
     void add_morph();
     void add_texture();
+    void add_evaluate();
+    void add_closest();
     CLI::App* add_command(const char* name, const char* text, bool reads_mesh, bool writes_mesh);
-    void add_later(CLI::App& command, const std::string& flag, bool takes_value);
     std::string common_help(bool reads_mesh) const;
     std::string help_page() const;
     [[noreturn]] void refuse_extras(std::vector<std::string> extras) const;
@@ -152,7 +169,6 @@ private:
 
     Options& options_;
     CLI::App app_;
-    std::vector<CLI::Option*> later_options_;
 };
 
 std::string Parser::version_text() {
@@ -246,6 +262,8 @@ void Parser::add_commands() {
     add_sharpen();
     add_morph();
     add_texture();
+    add_evaluate();
+    add_closest();
     for (const char* name : later_commands) {
         CLI::App* command = app_.add_subcommand(name)->group("")->prefix_command();
         command->set_help_flag();
@@ -258,13 +276,18 @@ void Parser::add_interpolate() {
     add_choice(*command, "--solver", options_.solver, solver_names, "Default auto: the fastest that is sure to converge");
     command->add_option("--subset", options_.subset_file, "Interpolate only these vertices, one a line")->type_name("FILE");
     command->add_option("--sweeps", options_.sweeps, "Exactly so many sweeps, no test")->check(count_from(1))->type_name("N");
-    for (const char* flag : {"--normals", "--handles", "--fair", "--map"}) add_later(*command, flag, true);
-    add_later(*command, "--refined", false);
+    command->add_flag("--refined", options_.refined, "Two-phase scheme: the refined control mesh M^1, which meets all vertices exactly (with --lambda, as the next four)");
+    command->add_option("--normals", options_.normals, "Normals to have: a CSV with header vertex,nx,ny,nz, or those of IN")->type_name("FILE|mesh");
+    command->add_option_function<std::string>("--handles", [this](const std::string& text) { set_handles(options_, text); },
+                                              "Shape handles of convex and of other vertices, or a CSV with header vertex,s: above 1 flatter, below 1 sharper")
+        ->type_name("S1,S2|FILE");
+    command->add_option("--fair", options_.fair, "Weight of fairness: bumps are taken out as far as the vertices allow")->check(positive_number())->type_name("W");
+    command->add_option("--map", options_.map_file, "CSV of the refined vertex of each vertex: vertex,refined_vertex")->type_name("FILE");
 }
 
 void Parser::add_limit() {
     CLI::App* command = add_command("limit", "Every vertex moved to its limit point", true, true);
-    add_later(*command, "--normals", false);
+    command->add_flag("--normals", options_.limit_normals, "Unit limit normals too (OBJ, PLY, OFF): at creases the mean of the sides, 0 0 0 at isolated vertices");
 }
 
 void Parser::add_refine() {
@@ -349,11 +372,21 @@ void Parser::add_texture() {
     command->add_flag("--on-mesh", options_.on_mesh, "OUT is IN itself with the colours at its vertices");
 }
 
-/// An option that is part of the command's contract but comes with a later version: known, so that asking for it gives a sentence of its own.
-void Parser::add_later(CLI::App& command, const std::string& flag, bool takes_value) {
-    CLI::Option* option = takes_value ? command.add_option_function<std::string>(flag, [](const std::string&) {}) : command.add_flag(flag);
-    option->group("");
-    later_options_.push_back(option);
+void Parser::add_evaluate() {
+    CLI::App* command = add_command("evaluate", "Exact points, derivatives and normals anywhere on the limit surface", true, false);
+    command->add_option("--at", options_.places_file, "CSV of places with header face,corner,u,v")->type_name("FILE.csv")->required();
+    command->add_option("-o,--output", options_.output, "Table to write; `-`: standard output")->type_name("OUT.csv")->required();
+    command
+        ->add_option("--derivatives", options_.derivatives,
+                     "0: points alone; 1 (default): first derivatives and normals too; 2: second ones and curvatures too")
+        ->check(count_within(0, 2))
+        ->type_name("0|1|2");
+}
+
+void Parser::add_closest() {
+    CLI::App* command = add_command("closest", "Closest points on the limit surface", true, false);
+    command->add_option("--points", options_.points_file, "Points: .ply .xyz .csv .off .obj .pts, also .gz")->type_name("FILE")->required();
+    command->add_option("-o,--output", options_.output, "Table to write; `-`: standard output")->type_name("OUT.csv")->required();
 }
 
 std::string Parser::common_help(bool reads_mesh) const {
@@ -383,10 +416,6 @@ void Parser::refuse_what_is_not_there() const {
     for (const char* name : later_commands) {
         if (options_.command == name)
             fail(exit_usage, std::string("this version does not have '") + name + "' yet; `limitcl --help` lists the commands it has");
-    }
-    for (const CLI::Option* option : later_options_) {
-        if (option->count() > 0)
-            fail(exit_usage, "this version does not have " + options_.command + " --" + option->get_lnames().front() + " yet; leave the option out");
     }
 }
 

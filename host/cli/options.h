@@ -2,6 +2,7 @@
 // The command line as a struct. Only options.cpp sees the parser's library.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <set>
@@ -51,7 +52,15 @@ struct Options {
     // interpolate
     lcl_solver solver = LCL_SOLVER_AUTO;
     std::string subset_file;
-    int sweeps = 0;  ///< 0: until the tolerance is met
+    int sweeps = 0;                              ///< 0: until the tolerance is met
+    std::string normals;                         ///< a CSV, "mesh", or empty: none
+    std::array<double, 2> handles = {1.0, 1.0};  ///< of convex and other vertices
+    std::string handles_file;                    ///< not empty: one a vertex, rules over handles
+    bool refined = false;
+    double fair = 0.0;  ///< 0: none
+
+    // limit
+    bool limit_normals = false;
 
     // refine
     int levels = 1;
@@ -93,6 +102,13 @@ struct Options {
     std::vector<double> colours;  ///< three numbers a colour; empty: the library's
     std::uint32_t seed = 0;
     bool on_mesh = false;
+
+    // evaluate
+    std::string places_file;
+    int derivatives = 1;
+
+    // closest
+    std::string points_file;
 
     bool has(const char* option) const { return given.count(option) > 0; }
 };

@@ -61,6 +61,18 @@ void add_solve(Json& json, const SolveSummary& solve) {
     json["surface_error_bound"] = number_or_null(solve.report.surface_error_bound);
 }
 
+void add_two_phase(Json& json, const lcl_two_phase_report& findings) {
+    json["two_phase"] = {{"largest_repair", number_or_null(findings.largest_repair)},
+                         {"max_error", number_or_null(findings.max_error)},
+                         {"normals", findings.normal_count},
+                         {"normals_left_out", findings.skipped_normals},
+                         {"normals_on_the_other_side", findings.wrong_side_count},
+                         {"seconds", findings.seconds}};
+    if (!std::isfinite(findings.energy[0])) return;
+    json["energy"] = {number_or_null(findings.energy[0]), number_or_null(findings.energy[1])};
+    json["two_phase"]["fair_iterations"] = findings.fair_iterations;
+}
+
 /// The rows of the CSV.
 Json spectrum_json(const SpectrumSummary& spectrum) {
     const std::size_t width = spectrum.channels.size();
@@ -164,6 +176,7 @@ std::string to_json(const Report& report) {
     if (!report.scheme.empty()) json["scheme"] = report.scheme;
     json["parameters"] = parameters_json(report);
     if (report.solve) add_solve(json, *report.solve);
+    if (report.two_phase) add_two_phase(json, *report.two_phase);
     if (report.volume) json["volume"] = *report.volume;
     if (report.spectrum) json["spectrum"] = spectrum_json(*report.spectrum);
     if (report.info) add_info(json, *report.info);

@@ -77,6 +77,7 @@ struct Report {
     std::string scheme;
     std::vector<std::pair<std::string, Parameter>> parameters;
     std::optional<SolveSummary> solve;
+    std::optional<lcl_two_phase_report> two_phase;
     std::optional<std::array<double, 2>> volume;  ///< before and after, of closed meshes
     std::optional<SpectrumSummary> spectrum;
     std::optional<InfoSummary> info;

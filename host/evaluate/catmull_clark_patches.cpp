@@ -2,6 +2,7 @@
 // One patch for each face of the refined mesh, that is for each corner of the quad mesh that the last refinement starts from: patch h is the child at half-edge
 // h, from the vertex V = origin(h). The refined mesh needs no topology of its own: its points are the vertices, edges and faces of the quad mesh. Of a patch's
 // four vertices - V, the point of edge h, of the face, of the edge before h - only V can be irregular.
+#include <algorithm>
 #include <charconv>
 #include <limits>
 #include <map>
@@ -289,10 +290,11 @@ struct Quarter {
     double s, t;
 };
 
+/// Without branches, which random places would mispredict.
 Quarter quarter_of(double u, double v) {
-    const int right = u > 0.5, upper = v > 0.5, corner = (right ^ upper) | upper << 1;
-    const double a = 2 * (right ? 1 - u : u), b = 2 * (upper ? 1 - v : v);
-    return corner & 1 ? Quarter{corner, b, a} : Quarter{corner, a, b};
+    const int right = u > 0.5, upper = v > 0.5, odd = right ^ upper;
+    const std::array<double, 2> along{2 * std::min(u, 1 - u), 2 * std::min(v, 1 - v)};
+    return {odd | upper << 1, along[odd], along[odd ^ 1]};
 }
 
 /// "6 corners (0 to 5)", "1 face (0)".
@@ -365,25 +367,18 @@ bool locate_on_polygons(const PatchTable& table, const Places& places, std::size
 
 }  // namespace
 
-void add_catmull_clark_patches(const PolygonMesh& mesh, const Topology& topology, const Features& features, const SchemeOptions& options, PatchTable& table) {
+void add_catmull_clark_patches(const Topology& topology, const Features& features, const SchemeOptions& options, PatchTable& table) {
     const bool all_quads = topology.uniform_degree == 4;
-    table.levels = all_quads ? 1 : 2;
+    table.refiner = std::make_shared<Refiner>(topology, features, options, all_quads ? 1 : 2);
     table.face_begin.assign(topology.face_offsets.begin(), topology.face_offsets.end());
     add_turns(2, table.turns);
-    Refinement first = refine_once(mesh, topology, features, options);
-    table.steps.push_back(std::move(first.stencils));
-    if (all_quads) return PatchBuilder(topology, features, table).build();
-    add_turns(4, table.turns);
-    SchemeOptions then = options;
-    then.alpha = 0;
-    const Topology quads = build_topology(first.mesh);
-    const Features refined_features = find_features(first.mesh, quads, first.features);
-    table.steps.push_back(refine_once(first.mesh, quads, refined_features, then).stencils);
-    PatchBuilder(quads, refined_features, table).build();
+    if (!all_quads) add_turns(4, table.turns);
+    const RefinerStep& last = table.refiner->steps().back();
+    PatchBuilder(last.topology, last.features, table).build();
 }
 
 void locate_catmull_clark(const PatchTable& table, const Places& places, std::size_t begin, std::size_t end, PatchPlace* out) {
-    const bool good = table.levels == 1 ? locate_on_quads(table, places, begin, end, out) : locate_on_polygons(table, places, begin, end, out);
+    const bool good = table.levels() == 1 ? locate_on_quads(table, places, begin, end, out) : locate_on_polygons(table, places, begin, end, out);
     for (std::size_t i = begin; !good && i < end; ++i)
         if (!exists(table, places, i)) refuse(table, places, i);
 }

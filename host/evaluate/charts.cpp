@@ -27,9 +27,7 @@ SurfacePlace Charts::surface_place(const ChartPlace& place) const {
 }
 
 /// Doo-Sabin: there is a square beyond the edge to the next vertex (0), the edge to the previous one (1), both (2).
-bool Charts::reaches_beyond(Index corner, int which) const {
-    return !table_.squares_beyond.empty() && table_.squares_beyond[3 * static_cast<std::size_t>(corner) + static_cast<std::size_t>(which)] >= 0;
-}
+bool Charts::reaches_beyond(Index corner, int which) const { return table_.square_beyond(corner, which) >= 0; }
 double Charts::low_a(Index corner) const { return reaches_beyond(corner, 1) ? -1 : 0; }
 double Charts::low_b(Index corner) const { return reaches_beyond(corner, 0) ? -1 : 0; }
 

@@ -13,10 +13,11 @@ namespace lcl {
 namespace {
 
 constexpr double wanted_seeds = 131072;
-constexpr int finest_grid = 16;     // of seeds in a chart, a side
-constexpr int most_steps = 60;      // near an extraordinary vertex Newton's method gains only a factor of about 3 a step
-constexpr double longest_step = 1;  // in a chart
-constexpr std::size_t smallest_piece = 1024;
+constexpr int finest_grid = 16;           // of seeds in a chart, a side
+constexpr int most_steps = 60;            // near an extraordinary vertex Newton's method gains only a factor of about 3 a step
+constexpr double longest_step = 1;        // in a chart
+constexpr double step_tolerance = 1e-12;  // of the surface's size
+constexpr std::size_t evaluations_a_point = 4, smallest_piece = 1024;
 
 using Vector = Eigen::Map<const Eigen::Vector3d>;
 
@@ -51,6 +52,9 @@ struct Search {
     ChartPlace best;                            ///< nearest so far
     double square = -1;                         ///< of its distance; below 0: not known yet
     double step_a = 0, step_b = 0, length = 0;  ///< from `best` to the trial, and how far that is in space
+
+    ChartPlace trial(const Charts& charts) const { return charts.move(best, step_a, step_b); }
+    void halve() { step_a /= 2, step_b /= 2, length /= 2; }
 };
 
 /// Solves H step = -gradient with what walls leave free. H: second derivatives of half the square of the distance where they are positive definite, else the
@@ -113,101 +117,132 @@ ClosestSearch::ClosestSearch(DeviceSurface& surface, const Topology& topology)
     seeds_->tree->buildIndex();
 }
 
-void ClosestSearch::find(const double* points, std::size_t stride, std::size_t count, const ClosestPoints& out) {
-    surface_.prepare_for(4 * count);  // about so many evaluations
-    for (std::size_t first = 0; first < count; first += DeviceSurface::piece_samples)
-        find_piece(points, stride, first, std::min(DeviceSurface::piece_samples, count - first), out);
-}
+/// The searches for a piece of the points, which go on together, step by step.
+class ClosestSearch::Piece {
+public:
+    Piece(ClosestSearch& search, const double* points, std::size_t stride, std::size_t count)
+        : search_(search), points_(points), stride_(stride), searches_(count), active_(count) {
+        batch_.resize(count);
+    }
 
-void ClosestSearch::find_piece(const double* points, std::size_t stride, std::size_t first, std::size_t count, const ClosestPoints& out) {
-    std::vector<Search> searches(count);
-    std::vector<Index> active(count);
-    Batch batch;
-    batch.resize(count);
-    SamplePiece piece;
-    const double tolerance = 1e-12 * surface_.size();
-    const auto target = [&](std::size_t i) { return Vector(points + (first + i) * stride); };
-    parallel_for(
-        count,
-        [&](std::size_t begin, std::size_t end) {
-            for (std::size_t i = begin; i < end; ++i) {
-                Index nearest = 0;
-                double square = 0;
-                seeds_->tree->knnSearch(points + (first + i) * stride, 1, &nearest, &square);
-                searches[i].best = seeds_->places[nearest];
-                active[i] = static_cast<Index>(i);
-                batch.set(i, charts_.surface_place(searches[i].best));
+    void run(std::size_t first, const ClosestPoints& out) {
+        start();
+        for (int step = 0; step < most_steps && !active_.empty(); ++step) {
+            evaluate_trials();
+            take_trials();
+            set_trials();
+        }
+        give(first, out);
+    }
+
+private:
+    Vector target(std::size_t i) const { return Vector(points_ + i * stride_); }
+
+    template <class Body>
+    static void for_each(std::size_t count, const Body& body) {
+        parallel_for(
+            count,
+            [&](std::size_t begin, std::size_t end) {
+                for (std::size_t i = begin; i < end; ++i) body(i);
+            },
+            smallest_piece);
+    }
+
+    /// Every search begins at the seed that is nearest to its point.
+    void start() {
+        for_each(searches_.size(), [&](std::size_t i) {
+            Index nearest = 0;
+            double square = 0;
+            search_.seeds_->tree->knnSearch(points_ + i * stride_, 1, &nearest, &square);
+            searches_[i].best = search_.seeds_->places[nearest];
+            active_[i] = static_cast<Index>(i);
+            batch_.set(i, search_.charts_.surface_place(searches_[i].best));
+        });
+    }
+
+    void evaluate_trials() {
+        SurfaceValues values;
+        values.points = batch_.points.data(), values.du = batch_.du.data(), values.dv = batch_.dv.data();
+        values.duu = batch_.duu.data(), values.duv = batch_.duv.data(), values.dvv = batch_.dvv.data();
+        batch_.evaluate(search_.surface_, samples_, active_.size(), values);
+    }
+
+    /// A trial that is nearer becomes the best place, from which the next step goes; else the step was too long.
+    void take_trials() {
+        goes_on_.assign(active_.size(), 0);
+        const double tolerance = step_tolerance * search_.surface_.size();
+        for_each(active_.size(), [&](std::size_t k) {
+            Search& search = searches_[active_[k]];
+            const Eigen::Vector3d way = Vector(&batch_.points[3 * k]) - target(active_[k]);
+            if (search.square >= 0 && !(way.squaredNorm() < search.square)) {
+                search.halve();
+            } else {
+                if (search.square >= 0) search.best = search.trial(search_.charts_);
+                search.square = way.squaredNorm();
+                set_step(k, way, search);
             }
-        },
-        smallest_piece);
-
-    SurfaceValues values;
-    values.points = batch.points.data(), values.du = batch.du.data(), values.dv = batch.dv.data();
-    values.duu = batch.duu.data(), values.duv = batch.duv.data(), values.dvv = batch.dvv.data();
-    for (int step = 0; step < most_steps && !active.empty(); ++step) {
-        batch.evaluate(surface_, piece, active.size(), values);
-        std::vector<char> goes_on(active.size());
-        parallel_for(
-            active.size(),
-            [&](std::size_t begin, std::size_t end) {
-                for (std::size_t k = begin; k < end; ++k) {
-                    Search& search = searches[active[k]];
-                    const Eigen::Vector3d way = Vector(&batch.points[3 * k]) - target(active[k]);
-                    const double square = way.squaredNorm();
-                    if (search.square >= 0 && !(square < search.square)) {  // too far: half of it
-                        search.step_a /= 2, search.step_b /= 2, search.length /= 2;
-                    } else {
-                        search.best = search.square < 0 ? search.best : charts_.move(search.best, search.step_a, search.step_b);
-                        search.square = square;
-                        const SurfacePlace& p = batch.places[k];
-                        const Vector u(&batch.du[3 * k]), v(&batch.dv[3 * k]), uu(&batch.duu[3 * k]), uv(&batch.duv[3 * k]), vv(&batch.dvv[3 * k]);
-                        Eigen::Matrix2d turn, metric, second;
-                        turn << p.ua, p.va, p.ub, p.vb;
-                        metric << u.dot(u), u.dot(v), u.dot(v), v.dot(v);
-                        second << way.dot(uu), way.dot(uv), way.dot(uv), way.dot(vv);
-                        metric = (turn * metric * turn.transpose()).eval();
-                        const Eigen::Matrix2d hessian = metric + turn * second * turn.transpose();
-                        const Eigen::Vector2d gradient = turn * Eigen::Vector2d(way.dot(u), way.dot(v));
-                        Eigen::Vector2d by = newton_step(hessian, metric, gradient, charts_.walls(search.best));
-                        const double longest = by.cwiseAbs().maxCoeff();
-                        if (longest > longest_step) by *= longest_step / longest;
-                        search.step_a = by[0], search.step_b = by[1];
-                        search.length = std::sqrt(std::max(0.0, by.dot(metric * by)));
-                    }
-                    goes_on[k] = search.length > tolerance;
-                }
-            },
-            smallest_piece);
+            goes_on_[k] = search.length > tolerance;
+        });
         std::size_t kept = 0;
-        for (std::size_t k = 0; k < active.size(); ++k)
-            if (goes_on[k]) active[kept++] = active[k];
-        active.resize(kept);
-        parallel_for(
-            kept,
-            [&](std::size_t begin, std::size_t end) {
-                for (std::size_t k = begin; k < end; ++k) {
-                    const Search& search = searches[active[k]];
-                    batch.set(k, charts_.surface_place(charts_.move(search.best, search.step_a, search.step_b)));
-                }
-            },
-            smallest_piece);
+        for (std::size_t k = 0; k < active_.size(); ++k)
+            if (goes_on_[k]) active_[kept++] = active_[k];
+        active_.resize(kept);
     }
 
-    for (std::size_t i = 0; i < count; ++i) batch.set(i, charts_.surface_place(searches[i].best));
-    SurfaceValues last;
-    last.points = batch.points.data(), last.normals = batch.normals.data();
-    batch.evaluate(surface_, piece, count, last);
-    for (std::size_t i = 0; i < count; ++i) {
-        const Vector at(&batch.points[3 * i]), normal(&batch.normals[3 * i]);
-        const Eigen::Vector3d way = target(i) - at;
-        const std::size_t to = first + i;
-        if (out.faces != nullptr) out.faces[to] = batch.faces[i];
-        if (out.corners != nullptr) out.corners[to] = batch.corners[i];
-        if (out.uv != nullptr) std::copy_n(&batch.uv[2 * i], 2, out.uv + 2 * to);
-        if (out.points != nullptr) std::copy_n(at.data(), 3, out.points + 3 * to);
-        if (out.normals != nullptr) std::copy_n(normal.data(), 3, out.normals + 3 * to);
-        if (out.distances != nullptr) out.distances[to] = way.dot(normal) < 0 ? -way.norm() : way.norm();
+    /// Newton's step on |S - p|^2 / 2 in the chart: gradient (S - p) . S_a, .., second derivatives S_a . S_b + (S - p) . S_ab, ..
+    void set_step(std::size_t k, const Eigen::Vector3d& way, Search& search) const {
+        const SurfacePlace& place = batch_.places[k];
+        const Vector u(&batch_.du[3 * k]), v(&batch_.dv[3 * k]), uu(&batch_.duu[3 * k]), uv(&batch_.duv[3 * k]), vv(&batch_.dvv[3 * k]);
+        Eigen::Matrix2d turn, metric, bend;
+        turn << place.ua, place.va, place.ub, place.vb;
+        metric << u.dot(u), u.dot(v), u.dot(v), v.dot(v);
+        bend << way.dot(uu), way.dot(uv), way.dot(uv), way.dot(vv);
+        metric = (turn * metric * turn.transpose()).eval();
+        Eigen::Vector2d step =
+            newton_step(metric + turn * bend * turn.transpose(), metric, turn * Eigen::Vector2d(way.dot(u), way.dot(v)), search_.charts_.walls(search.best));
+        const double longest = step.cwiseAbs().maxCoeff();
+        if (longest > longest_step) step *= longest_step / longest;
+        search.step_a = step[0], search.step_b = step[1];
+        search.length = std::sqrt(std::max(0.0, step.dot(metric * step)));
     }
+
+    void set_trials() {
+        for_each(active_.size(), [&](std::size_t k) { batch_.set(k, search_.charts_.surface_place(searches_[active_[k]].trial(search_.charts_))); });
+    }
+
+    void give(std::size_t first, const ClosestPoints& out) {
+        const std::size_t count = searches_.size();
+        for_each(count, [&](std::size_t i) { batch_.set(i, search_.charts_.surface_place(searches_[i].best)); });
+        SurfaceValues values;
+        values.points = batch_.points.data(), values.normals = batch_.normals.data();
+        batch_.evaluate(search_.surface_, samples_, count, values);
+        for_each(count, [&](std::size_t i) {
+            const Vector at(&batch_.points[3 * i]), normal(&batch_.normals[3 * i]);
+            const Eigen::Vector3d way = target(i) - at;
+            const std::size_t to = first + i;
+            if (out.faces != nullptr) out.faces[to] = batch_.faces[i];
+            if (out.corners != nullptr) out.corners[to] = batch_.corners[i];
+            if (out.uv != nullptr) std::copy_n(&batch_.uv[2 * i], 2, out.uv + 2 * to);
+            if (out.points != nullptr) std::copy_n(at.data(), 3, out.points + 3 * to);
+            if (out.normals != nullptr) std::copy_n(normal.data(), 3, out.normals + 3 * to);
+            if (out.distances != nullptr) out.distances[to] = way.dot(normal) < 0 ? -way.norm() : way.norm();
+        });
+    }
+
+    ClosestSearch& search_;
+    const double* points_;
+    std::size_t stride_;
+    std::vector<Search> searches_;
+    std::vector<Index> active_;  // whose trials stand in batch_, in this order
+    std::vector<char> goes_on_;
+    Batch batch_;
+    SamplePiece samples_;
+};
+
+void ClosestSearch::find(const double* points, std::size_t stride, std::size_t count, const ClosestPoints& out) {
+    surface_.prepare_for(evaluations_a_point * count);
+    for (std::size_t first = 0; first < count; first += DeviceSurface::piece_samples)
+        Piece(*this, points + first * stride, stride, std::min(DeviceSurface::piece_samples, count - first)).run(first, out);
 }
 
 }  // namespace lcl

@@ -29,7 +29,7 @@ public:
 
 private:
     struct Seeds;
-    void find_piece(const double* points, std::size_t stride, std::size_t first, std::size_t count, const ClosestPoints& out);
+    class Piece;
 
     DeviceSurface& surface_;
     Charts charts_;

@@ -6,7 +6,6 @@
 // Regular are the patches of boundary points and kept corners, and those at faces of four sides. The others have the centre of their extraordinary face, which
 // boundaries do not touch any more, at (s, t) = (0, 0), and so have the regular ones at corners of faces.
 #include <cmath>
-#include <limits>
 #include <map>
 #include <string>
 
@@ -60,8 +59,7 @@ private:
             const Index sides = patch < corners ? topology_.degree(topology_.half_edge_face[patch]) : 4;
             if (sides != 4) table_.kind[patch] = kind_of(sides);
             next += sides == 4 ? 9 : sides + 5;
-            if (next > std::numeric_limits<Index>::max())
-                throw OutOfMemory("the patches of the limit surface have more than 2147483647 control points together: take a smaller mesh");
+            check_control_count(next);
             table_.patch_begin.push_back(static_cast<Index>(next));
         }
         table_.control.resize(next);
@@ -142,7 +140,7 @@ void add_squares_beyond(const Topology& topology, const DooSabinLayout& layout, 
 /// The vertex of the once refined mesh whose square lies beyond edges at an old corner, or the corner's own; -1 where there is none.
 Index square_at(const PatchTable& table, Index corner, Square square) {
     if (square == Square::corner) return corner;
-    return table.squares_beyond.empty() ? -1 : table.squares_beyond[3 * static_cast<std::size_t>(corner) + static_cast<std::size_t>(square) - 1];
+    return table.square_beyond(corner, static_cast<int>(square) - 1);
 }
 
 Square square_of(double u, double v) { return u < 0 ? v < 0 ? Square::kept : Square::beyond_previous : v < 0 ? Square::beyond_next : Square::corner; }
@@ -173,16 +171,13 @@ bool corner_exists(const PatchTable& table, const Places& places, std::size_t i)
 
 }  // namespace
 
-void add_doo_sabin_patches(const PolygonMesh& mesh, const Topology& topology, const Features& features, const SchemeOptions& options, PatchTable& table) {
+void add_doo_sabin_patches(const Topology& topology, const Features& features, const SchemeOptions& options, PatchTable& table) {
     const DooSabinLayout first_layout = lay_out_doo_sabin(topology, features);
     check_corners(first_layout);
-    Refinement first = refine_once(mesh, topology, features, options);
-    const Topology once = build_topology(first.mesh);
-    const Features once_features = find_features(first.mesh, once, first.features);
-    const DooSabinLayout second_layout = lay_out_doo_sabin(once, once_features);
-    table.levels = 2;
-    table.steps.push_back(std::move(first.stencils));
-    table.steps.push_back(refine_once(first.mesh, once, once_features, options).stencils);
+    table.refiner = std::make_shared<Refiner>(topology, features, options, 2);
+    const Topology& once = table.refiner->steps().back().topology;
+    check_control_count(8 * static_cast<std::int64_t>(once.half_edge_count()));  // no patch has fewer
+    const DooSabinLayout second_layout = lay_out_doo_sabin(once, table.refiner->steps().back().features);
     table.face_begin.assign(topology.face_offsets.begin(), topology.face_offsets.end());
     table.turns.assign(std::begin(turns), std::end(turns));
     PatchBuilder(once, second_layout, first_layout.kept_begin, options.mask, table).build();

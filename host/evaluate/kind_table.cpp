@@ -62,7 +62,7 @@ KindTable table_of_powers(const PatchKind& kind) {
 }  // namespace
 
 KindTable make_kind_table(const PatchKind& kind) {
-    const std::optional<Modes> modes = find_modes(kind);
+    const std::shared_ptr<const Modes> modes = modes_of(kind);
     return modes ? table_of(*modes) : table_of_powers(kind);
 }
 

@@ -2,13 +2,13 @@
 // One patch for each triangle after one explicit refinement: 4f + k begins at corner k of face f, 4f + 3 is the middle one. Only the old vertex where a patch
 // begins can be irregular; the points of edges have six triangles round them, or three on each side of a sharp edge.
 #include <cmath>
-#include <limits>
 #include <map>
 #include <string>
 
 #include "host/evaluate/loop_walk.h"
 #include "host/evaluate/patch_table.h"
 #include "host/parallel.h"
+#include "host/refine/steps.h"
 
 namespace lcl {
 namespace {
@@ -21,7 +21,7 @@ constexpr ParameterTurn child_turns[4] = {{2, 0, 0, 2}, {0, -2, 2, -2}, {-2, 2, 
 class PatchBuilder {
 public:
     PatchBuilder(const Topology& topology, const Features& features, PatchTable& table)
-        : walk_(topology, features), table_(table), places_(topology.face_count) {}
+        : walk_(topology, features), table_(table), places_(4 * static_cast<std::size_t>(topology.face_count)) {}
 
     void build() {
         table_.ghosts = walk_.ghosts();
@@ -49,8 +49,7 @@ private:
         for (std::size_t patch = 0; patch < places_.size(); ++patch) {
             if (places_[patch].round != LoopRound::regular) table_.kind[patch] = kind_of(places_[patch]);
             next += places_[patch].point_count();
-            if (next > std::numeric_limits<Index>::max())
-                throw OutOfMemory("the patches of the limit surface have more than 2147483647 control points together: take a smaller mesh");
+            check_control_count(next);
             table_.patch_begin.push_back(static_cast<Index>(next));
         }
         table_.control.resize(next);
@@ -101,14 +100,12 @@ PatchPlace place_in(Index face, double u, double v) {
 
 }  // namespace
 
-void add_loop_patches(const PolygonMesh& mesh, const Topology& topology, const Features& features, const SchemeOptions& options, PatchTable& table) {
-    table.levels = 1;
-    Refinement refined = refine_once(mesh, topology, features, options);
-    table.steps.push_back(std::move(refined.stencils));
+void add_loop_patches(const Topology& topology, const Features& features, const SchemeOptions& options, PatchTable& table) {
+    check_control_count(24 * static_cast<std::int64_t>(topology.face_count));  // no patch has fewer than 6
+    table.refiner = std::make_shared<Refiner>(topology, features, options, 1);
     table.face_begin.assign(topology.face_offsets.begin(), topology.face_offsets.end());
     table.turns.assign(std::begin(child_turns), std::end(child_turns));
-    const Topology fine = build_topology(refined.mesh);
-    PatchBuilder(fine, find_features(refined.mesh, fine, refined.features), table).build();
+    PatchBuilder(topology, features, table).build();
 }
 
 void locate_loop(const PatchTable& table, const Places& places, std::size_t begin, std::size_t end, PatchPlace* out) {

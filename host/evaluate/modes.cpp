@@ -69,6 +69,17 @@ MatrixXd harmonics(const std::vector<Orbit>& orbits, Eigen::Index point_count, i
     return columns.leftCols(count);
 }
 
+/// What the step does to the coefficients of `columns`: it takes each to multiples of them, which one row of an orbit tells.
+MatrixXd block_of(const MatrixXd& step, const MatrixXd& columns) {
+    MatrixXd block(columns.cols(), columns.cols());
+    for (Eigen::Index j = 0; j < columns.cols(); ++j) {
+        Eigen::Index row;
+        const double largest = columns.col(j).cwiseAbs().maxCoeff(&row);
+        block.row(j) = step.row(row) * columns / (columns(row, j) < 0 ? -largest : largest);
+    }
+    return block;
+}
+
 /// The eigenvectors that are made of `columns`: block is what the step does to their coefficients.
 void add_family(const MatrixXd& columns, const Eigenbasis& block, Eigen::Index& count, Eigenbasis& inner) {
     const Eigen::Index size = columns.cols();
@@ -92,10 +103,7 @@ std::optional<Eigenbasis> inner_eigenbasis(const MatrixXd& step, const std::vect
             const Eigen::Index size = columns.cols();
             if (size == 0) continue;
             // A reflection turns cosines into sines, so both have one block, but where some of them vanish: at half the number of turns.
-            if (!sines || 2 * frequency == turns) {
-                const VectorXd squares = columns.colwise().squaredNorm();
-                block = small_eigenbasis(squares.cwiseInverse().asDiagonal() * (columns.transpose() * (step * columns)));
-            }
+            if (!sines || 2 * frequency == turns) block = small_eigenbasis(block_of(step, columns));
             if (!block || block->values.size() != size || count + size > n) return std::nullopt;
             add_family(columns, *block, count, inner);
         }

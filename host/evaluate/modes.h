@@ -24,7 +24,7 @@ struct Modes {
 
 /// By turns of the orbits (discrete Fourier transform) into small blocks, whose eigenvectors are carried on to the outer points; verified against what powers
 /// of `step` make of scattered control points, to 1e-12 of the largest, for m up to 30. Nothing where the kind has no orbits, or where the verification fails
-/// (a defective family that is not known): its powers serve then. 1.3 ms for the valence 50, cubic in it.
+/// (a defective family that is not known): its powers serve then. Quadratic in the valence: about 1 ms for 50.
 std::optional<Modes> find_modes(const PatchKind& kind);
 
 /// The same, found once a process for kinds with the same matrices; null where there are none. Thread-safe.

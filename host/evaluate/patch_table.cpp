@@ -2,21 +2,27 @@
 #include "host/evaluate/patch_table.h"
 
 #include <algorithm>
+#include <limits>
 
 #include "host/parallel.h"
 
 namespace lcl {
 
-PatchTable build_patch_table(const PolygonMesh& mesh, const Topology& topology, const Features& features, const SchemeOptions& options) {
+PatchTable build_patch_table(const Topology& topology, const Features& features, const SchemeOptions& options) {
     PatchTable table;
     table.scheme = options.scheme;
-    table.point_count = mesh.vertex_count;
+    table.point_count = topology.vertex_count;
     switch (options.scheme) {
-        case Scheme::catmull_clark: add_catmull_clark_patches(mesh, topology, features, options, table); break;
-        case Scheme::loop: add_loop_patches(mesh, topology, features, options, table); break;
-        case Scheme::doo_sabin: add_doo_sabin_patches(mesh, topology, features, options, table); break;
+        case Scheme::catmull_clark: add_catmull_clark_patches(topology, features, options, table); break;
+        case Scheme::loop: add_loop_patches(topology, features, options, table); break;
+        case Scheme::doo_sabin: add_doo_sabin_patches(topology, features, options, table); break;
     }
     return table;
+}
+
+void check_control_count(std::int64_t count) {
+    if (count > std::numeric_limits<Index>::max())
+        throw OutOfMemory("the patches of the limit surface have more than 2147483647 control points together: take a smaller mesh");
 }
 
 void locate(const PatchTable& table, const Places& places, std::size_t begin, std::size_t end, PatchPlace* out) {
@@ -28,8 +34,9 @@ void locate(const PatchTable& table, const Places& places, std::size_t begin, st
 }
 
 std::vector<double> control_points(const PatchTable& table, const std::vector<double>& points, int channels) {
-    std::vector<double> refined = points;
-    for (const Stencils& step : table.steps) refined = apply_stencils(step, refined, channels);
+    const std::size_t row = static_cast<std::size_t>(channels);
+    std::vector<double> refined(static_cast<std::size_t>(table.refined_count()) * row);
+    table.refiner->apply(points.data(), row, channels, refined.data(), row);
     const std::vector<double> ghosts = apply_stencils(table.ghosts, refined, channels);
     refined.insert(refined.end(), ghosts.begin(), ghosts.end());
     return refined;

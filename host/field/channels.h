@@ -50,6 +50,9 @@ struct Transform {
     std::vector<double> centre, scale;
 };
 
+/// Values as they are: for directions.
+inline Transform unscaled(int channels) { return {std::vector<double>(channels, 0.0), std::vector<double>(channels, 1.0)}; }
+
 /// Positions: centre and inverse diagonal of the bounding box; further channels: middle and inverse range. 1 where a range is 0, or, where rows do not sum to
 /// 1, the inverse of the largest value. Isolated vertices are left out. BadInput for a value that is not finite, or values so large, so close together or so
 /// far from 0 where that is the centre that they cannot be scaled. values: row v of `stride` doubles belongs to vertex v.

@@ -64,7 +64,7 @@ public:
         current_.mesh = mesh;
         current_.features = features;
         find_topology();
-        check_fits(refined_size(mesh, topology_, features_, scheme_, options.levels), options.levels, further_.count, *context_);
+        check_fits(refined_size(topology_, features_, scheme_, options.levels), options.levels, further_.count, *context_);
         const Transform box = fit_transform(coarsest.plan(), mesh.positions.data(), 3, 3);
         std::copy_n(box.centre.begin(), 3, frame_.centre.begin());
         frame_.scale = options.frequency * box.scale[0];  // without extent all points are at the centre

@@ -19,12 +19,6 @@ struct TextureOptions {
     SolveOptions solve;  ///< of every octave: precision, tolerance (relative to the range of its noise), max_iterations, keep_going, progress
 };
 
-/// Further channels of the vertices, which are refined and taken to the limit with the noise: vertex_count x count.
-struct FurtherChannels {
-    int count = 0;
-    std::vector<double> values;
-};
-
 struct Texture {
     Refinement refined;         ///< G_K with its vertices at their limit points; no stencils, no parents
     std::vector<double> noise;  ///< t in [0, 1], one a vertex

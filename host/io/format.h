@@ -18,6 +18,7 @@ struct InputBytes {
     std::size_t size;
     const std::string& name;
     Splitting splitting = {};
+    bool with_normals = false;  ///< MeshFile::given_normals is asked for
 };
 
 /// Where writers send their bytes, in order; a sink that cannot take them throws WriteError.

@@ -134,9 +134,9 @@ void write_to_sink(const MeshFile& file, const FormatRow& row, bool gzip, ByteSi
     packed.finish();
 }
 
-MeshFile read_unpacked(const char* bytes, std::size_t size, const FormatRow& row, const std::string& name) {
+MeshFile read_unpacked(const char* bytes, std::size_t size, const FormatRow& row, const std::string& name, bool with_normals) {
     if (size == 0) throw BadInput(name + " is empty; it holds no mesh");
-    return row.read({bytes, size, name});
+    return row.read({bytes, size, name, {}, with_normals});
 }
 
 /// Memory that cannot be had, in words.
@@ -149,11 +149,11 @@ auto within_memory(const Read& read, std::size_t size, const std::string& name) 
     throw OutOfMemory("there is not enough memory to read " + name + " (" + std::to_string(size) + " bytes)");
 }
 
-MeshFile read_packed_or_not(const char* bytes, std::size_t size, const FormatRow& row, const std::string& name) {
+MeshFile read_packed_or_not(const char* bytes, std::size_t size, const FormatRow& row, const std::string& name, bool with_normals) {
     const auto read = [&] {
-        if (!is_gzip(bytes, size)) return read_unpacked(bytes, size, row, name);
+        if (!is_gzip(bytes, size)) return read_unpacked(bytes, size, row, name, with_normals);
         const OwnedBytes unpacked = unpack_gzip(bytes, size, name);
-        return read_unpacked(unpacked.data.get(), unpacked.size, row, name);
+        return read_unpacked(unpacked.data.get(), unpacked.size, row, name, with_normals);
     };
     return within_memory(read, size, name);
 }
@@ -176,22 +176,22 @@ FileFormat format_of_path(const std::string& path, bool& gzip) {
     throw InvalidArgument("the ending of " + path + " names no mesh format; use .obj, .off, .ply, .stl or .om, with .gz behind it if packed");
 }
 
-MeshFile read_mesh(const std::string& path, FileFormat format) {
+MeshFile read_mesh(const std::string& path, FileFormat format, bool with_normals) {
     bool ends_in_gz = false;
     const FormatRow& row = choose_format(path, format, ends_in_gz);
     const InputFile file(path);
     const std::string name = path == "-" ? "standard input" : path;
-    if (!ends_in_gz)
+    if (!ends_in_gz && !with_normals)
         if (std::optional<MeshFile> mesh = try_read_pieces(file, row, name)) return *std::move(mesh);
     const OwnedBytes bytes = file.read_all();
     if (ends_in_gz && bytes.size > 0 && !is_gzip(bytes.data.get(), bytes.size))
         throw BadInput(name + " is no gzip file; drop .gz from its name if it is not packed");
-    return read_packed_or_not(bytes.data.get(), bytes.size, row, name);
+    return read_packed_or_not(bytes.data.get(), bytes.size, row, name, with_normals);
 }
 
-MeshFile read_mesh_memory(const char* bytes, std::size_t size, FileFormat format, const std::string& name) {
+MeshFile read_mesh_memory(const char* bytes, std::size_t size, FileFormat format, const std::string& name, bool with_normals) {
     bool ends_in_gz = false;
-    return read_packed_or_not(bytes, size, choose_format(name, format, ends_in_gz), name);
+    return read_packed_or_not(bytes, size, choose_format(name, format, ends_in_gz), name, with_normals);
 }
 
 void write_mesh(const std::string& path, const MeshFile& file, FileFormat format, std::vector<std::string>& warnings) {

@@ -54,10 +54,11 @@ struct MeshFile {
     std::vector<PassThroughLine> lines;
     MeshTags tags;
     std::vector<std::pair<std::string, Index>> unknown_statements;  ///< OBJ statements that were skipped, with their number
-    std::vector<double> normals;                                    ///< only for writing (limit normals): vertex_count x 3, or empty; a reader drops normals
-    std::vector<std::string> warnings;                              ///< what could not be kept, one sentence each
-    std::string ply_encoding;                                       ///< "ascii", "binary_little_endian", "binary_big_endian"; empty: the default
-    std::string ply_position_type;                                  ///< "float", "double"; empty: double
+    std::vector<double> normals;                                    ///< only for writing (limit normals): vertex_count x 3, or empty
+    std::vector<double> given_normals;  ///< only from reading, where asked for: vertex_count x 3, NaN where a vertex has none; empty where none has one
+    std::vector<std::string> warnings;  ///< what could not be kept, one sentence each
+    std::string ply_encoding;           ///< "ascii", "binary_little_endian", "binary_big_endian"; empty: the default
+    std::string ply_position_type;      ///< "float", "double"; empty: double
 };
 
 /// The format that an ending names (any case, .gz stripped); InvalidArgument if it names none. `gzip` says whether .gz was there.
@@ -65,11 +66,11 @@ FileFormat format_of_path(const std::string& path, bool& gzip);
 
 /// Reads a mesh. path "-" reads standard input and needs a format. FileError: cannot be opened; BadInput: malformed, with file and line or byte.
 /// Indices are checked for range by find_defects, not here, save where the format makes that impossible; counts in headers that the file cannot hold are
-/// BadInput.
-MeshFile read_mesh(const std::string& path, FileFormat format = FileFormat::by_ending);
+/// BadInput. with_normals: normals of the vertices (OBJ, PLY, OFF) are kept instead of dropped; takes longer.
+MeshFile read_mesh(const std::string& path, FileFormat format = FileFormat::by_ending, bool with_normals = false);
 
 /// The same from memory (fuzzers, tests, standard input): `name` stands in messages.
-MeshFile read_mesh_memory(const char* bytes, std::size_t size, FileFormat format, const std::string& name);
+MeshFile read_mesh_memory(const char* bytes, std::size_t size, FileFormat format, const std::string& name, bool with_normals = false);
 
 /// Writes complete or not at all: a temporary file in the same folder, then rename. path "-" writes standard output and needs a format. WriteError if that
 /// fails. `warnings` receives what the format cannot hold, one sentence each. A mesh with other than triangles to STL: InvalidArgument.

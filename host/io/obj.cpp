@@ -2,8 +2,8 @@
 // Wavefront OBJ with OpenSubdiv's tags: https://paulbourke.net/dataformats/obj/ and OpenSubdiv's regression/common/shape_utils.
 //
 // Kept: v (x y z, with r g b [a] behind them as many programs write), vt, f, the lines o g s usemtl mtllib in their place, and the tags crease, corner and
-// interpolateboundary. Dropped: vn, and w of a vertex. Everything else is counted. Colours are numbers from 0 to 1 in this format; integer columns of
-// other formats are divided by their full intensity when written.
+// interpolateboundary. vn only where asked for. Dropped: w of a vertex. Everything else is counted. Colours are numbers from 0 to 1 in this format; integer
+// columns of other formats are divided by their full intensity when written.
 //
 // A text is read in parts of whole lines, at once. What is wrong in a part is not said before the whole has been looked at from its beginning, so that the
 // sentence, its line number included, is the one for the first line that is wrong.
@@ -24,7 +24,9 @@ constexpr double infinite_sharpness = 10;  // OpenSubdiv's Crease::SHARPNESS_INF
 class ObjReader {
 public:
     /// is_first: the part begins with the text, so that all that was counted before is known.
-    ObjReader(const std::string& name, std::size_t size, bool is_first) : scan_({nullptr, 0, name}, '#', true), is_first_(is_first) {
+    /// with_normals: of one that reads the whole text.
+    ObjReader(const std::string& name, std::size_t size, bool is_first, bool with_normals = false)
+        : scan_({nullptr, 0, name}, '#', true), is_first_(is_first), with_normals_(with_normals) {
         // Lines of nothing but short indices or long coordinates; room that is not used costs nothing.
         file_.mesh.positions.reserve(size / 16);
         file_.mesh.face_vertices.reserve(size / 6);
@@ -42,6 +44,21 @@ public:
 
     ObjPart take() { return std::move(part_); }
 
+    /// For each vertex of the mesh the mean of the normals at its corners, NaN where there is none; empty where no corner has one.
+    std::vector<double> take_vertex_normals(const PolygonMesh& mesh) const {
+        if (corner_normals_.empty()) return {};
+        std::vector<double> normals(3 * static_cast<std::size_t>(mesh.vertex_count), 0.0), counts(mesh.vertex_count, 0.0);
+        for (std::size_t corner = 0; corner < corner_normals_.size(); ++corner) {
+            const std::int64_t normal = corner_normals_[corner], vertex = mesh.face_vertices[corner];
+            const bool is_there = normal >= 0 && normal < static_cast<std::int64_t>(normals_.size() / 3) && vertex >= 0 && vertex < mesh.vertex_count;
+            if (!is_there) continue;
+            for (std::int64_t c = 0; c < 3; ++c) normals[3 * vertex + c] += normals_[3 * normal + c];
+            ++counts[vertex];
+        }
+        for (std::size_t i = 0; i < normals.size(); ++i) normals[i] /= counts[i / 3];  // 0 / 0: none
+        return normals;
+    }
+
     [[noreturn]] void fail_without_vertices() { scan_.fail(scan_.end(), "no vertex line (v x y z) was found; is this an OBJ file?"); }
 
 private:
@@ -51,7 +68,7 @@ private:
         if (keyword == "v") read_vertex();
         else if (keyword == "f") read_face();
         else if (keyword == "vt") read_texture_coordinate();
-        else if (keyword == "vn") return;
+        else if (keyword == "vn") read_normal();
         else if (keyword == "t") read_tag();
         else if (keyword == "o" || keyword == "g" || keyword == "s" || keyword == "usemtl" || keyword == "mtllib") keep_line();
         else part_.count_unknown(printable(keyword), 1);
@@ -96,6 +113,19 @@ private:
         file_.uvs.values.insert(file_.uvs.values.end(), values, values + file_.uvs.components);
     }
 
+    void read_normal() {
+        if (!with_normals_) return;
+        double values[3];
+        const int count = numbers(values, 3, "a component of a normal");
+        if (count != 3) scan_.fail(statement_, "a normal needs three components, this line has " + std::to_string(count));
+        normals_.insert(normals_.end(), values, values + 3);
+    }
+
+    void keep_normal(std::size_t corner, Index normal) {
+        corner_normals_.resize(corner, -1);
+        corner_normals_.push_back(normal > 0 ? std::int64_t{normal} - 1 : static_cast<std::int64_t>(normals_.size() / 3) + normal);
+    }
+
     void read_face() {
         std::vector<Index>& corners = file_.mesh.face_vertices;
         read_plain_corners();
@@ -125,7 +155,10 @@ private:
         if (take_slash() && !at_corner_part_end())
             texture_coordinate = read_index(texture_coordinate_count(file_.uvs), corner, part_.relative_texture_corners, "texture coordinate");
         Index normal;
-        if (take_slash() && !at_corner_part_end() && !scan_.try_integer(normal)) fail_corner();
+        if (take_slash() && !at_corner_part_end()) {
+            if (!scan_.try_integer(normal)) fail_corner();
+            if (with_normals_) keep_normal(corner, normal);
+        }
         if (!scan_.at_end() && !scan_.is_delimiter(*scan_.at())) fail_corner();
         if (!texture_coordinate && file_.uvs.corner_indices.empty()) return;
         file_.uvs.corner_indices.resize(corner, -1);
@@ -254,7 +287,9 @@ private:
     }
 
     TextScanner scan_;
-    const bool is_first_;
+    const bool is_first_, with_normals_;
+    std::vector<double> normals_;
+    std::vector<std::int64_t> corner_normals_;  // of the corners up to the last that has one; -1: none
     ObjPart part_;
     MeshFile& file_ = part_.file;
     const char* statement_ = nullptr;  // where the present statement begins
@@ -295,13 +330,15 @@ std::optional<MeshFile> try_read_obj(const Text& text, const Splitting& splittin
 
 MeshFile read_obj(const InputBytes& input) {
     const Text text{input.data, input.size, input.name};
-    if (input.splitting.parts_of(input.size) > 1)
+    if (input.splitting.parts_of(input.size) > 1 && !input.with_normals)
         if (std::optional<MeshFile> file = try_read_obj(text, input.splitting)) return *std::move(file);
-    ObjReader reader(input.name, input.size, true);
+    ObjReader reader(input.name, input.size, true, input.with_normals);
     reader.read({input.data, input.size}, true);
     ObjPart whole = reader.take();
     if (whole.file.mesh.positions.empty()) reader.fail_without_vertices();
-    return finish(std::move(whole));
+    MeshFile file = finish(std::move(whole));
+    file.given_normals = reader.take_vertex_normals(file.mesh);
+    return file;
 }
 
 }  // namespace lcl

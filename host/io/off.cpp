@@ -7,7 +7,7 @@
 //   n v0 v1 .. [colour]              a face
 //
 // Numbers may be spread over lines, save that what follows a face's corners, and a vertex's colour (three or four numbers), ends with its line.
-// Dropped: normals, face colours. Refused: binary OFF, and points of other than three coordinates (4OFF, nOFF).
+// Dropped: normals (unless asked for), face colours. Refused: binary OFF, and points of other than three coordinates (4OFF, nOFF).
 #include <algorithm>
 #include <cmath>
 
@@ -24,7 +24,7 @@ constexpr double no_alpha = -1;  // of a vertex whose colour has three numbers
 
 class OffReader {
 public:
-    explicit OffReader(const InputBytes& input) : scan_(input, '#'), size_(input.size), splitting_(input.splitting) {}
+    explicit OffReader(const InputBytes& input) : scan_(input, '#'), size_(input.size), splitting_(input.splitting), with_normals_(input.with_normals) {}
 
     MeshFile read() {
         read_header();
@@ -88,6 +88,7 @@ private:
     void prepare() {
         file_.mesh.vertex_count = static_cast<Index>(vertex_count_);
         file_.mesh.positions.resize(3 * vertex_count_);
+        if (has_normals_ && with_normals_) file_.given_normals.resize(3 * vertex_count_);
         if (has_texture_coordinates_) file_.uvs.values.resize(2 * vertex_count_);
     }
 
@@ -159,8 +160,8 @@ private:
 
     void read_vertex(TextScanner& scan, std::size_t v, Rows& rows) {
         read_numbers(scan, &file_.mesh.positions[3 * v], 3, "a coordinate");
-        double normal[3];
-        if (has_normals_) read_numbers(scan, normal, 3, "a coordinate of a normal");
+        double dropped[3];
+        if (has_normals_) read_numbers(scan, file_.given_normals.empty() ? dropped : &file_.given_normals[3 * v], 3, "a coordinate of a normal");
         if (has_colours_) read_colour(scan, v);
         if (has_texture_coordinates_) read_numbers(scan, &file_.uvs.values[2 * v], 2, "a texture coordinate");
         skip_extras(scan, rows.vertices_with_extras);
@@ -243,6 +244,7 @@ private:
     TextScanner scan_;
     std::size_t size_;
     Splitting splitting_;
+    const bool with_normals_;
     MeshFile file_;
     bool has_texture_coordinates_ = false, has_colours_ = false, has_normals_ = false;
     std::size_t vertex_count_ = 0, face_count_ = 0, vertices_with_extras_ = 0, faces_with_extras_ = 0;

@@ -2,9 +2,9 @@
 // PLY, ASCII and both binary encodings: Greg Turk, "The PLY Polygon File Format", 1994. A file names its elements and their properties; what is in
 // them is read by that description alone.
 //
-// Kept: x y z, every other scalar of a vertex save nx ny nz (with its type), the faces' list vertex_indices or vertex_index, and their list texcoord
-// (two numbers a corner, as MeshLab writes it). Everything else is skipped, with a warning. An ASCII row ends with its line. ASCII numbers are read and
-// written as doubles, also where the header says float: text can hold them, and nothing is lost.
+// Kept: x y z, every other scalar of a vertex (with its type) save nx ny nz, which only come where asked for, the faces' list vertex_indices or vertex_index,
+// and their list texcoord (two numbers a corner, as MeshLab writes it). Everything else is skipped, with a warning. An ASCII row ends with its line. ASCII
+// numbers are read and written as doubles, also where the header says float: text can hold them, and nothing is lost.
 #include <algorithm>
 
 #include "host/io/join_faces.h"
@@ -193,6 +193,9 @@ private:
         file_.mesh.positions.resize(3 * element.count);
         file_.properties.reserve(element.properties.size());
         std::vector<Column> columns(element.properties.size());
+        const bool has_normals =
+            input_.with_normals && find_property(element, "nx") >= 0 && find_property(element, "ny") >= 0 && find_property(element, "nz") >= 0;
+        if (has_normals) file_.given_normals.resize(3 * element.count);
         double* const positions = element.count > 0 ? file_.mesh.positions.data() : nullptr;
         for (std::size_t p = 0; p < columns.size(); ++p) {
             const PlyProperty& property = element.properties[p];
@@ -201,7 +204,9 @@ private:
                 warn_of_skipped("vertices", property);
             } else if (axis != axes + 3) {
                 columns[p] = {positions ? positions + (axis - axes) : nullptr, 3};
-            } else if (property.name != "nx" && property.name != "ny" && property.name != "nz") {
+            } else if (const int component = normal_component(property.name); component >= 0) {
+                if (has_normals && element.count > 0) columns[p] = {file_.given_normals.data() + component, 3};
+            } else {
                 file_.properties.push_back(make_property(property, element.count));
                 columns[p] = {file_.properties.back().values.data(), 1};
             }
@@ -209,9 +214,18 @@ private:
         return columns;
     }
 
-    int find_axis(const PlyElement& element, const char* name) const {
+    static int normal_component(const std::string& name) { return name == "nx" ? 0 : name == "ny" ? 1 : name == "nz" ? 2 : -1; }
+
+    /// Place of a scalar property, -1 where there is none.
+    static int find_property(const PlyElement& element, const char* name) {
         for (std::size_t p = 0; p < element.properties.size(); ++p)
             if (!element.properties[p].is_list && element.properties[p].name == name) return static_cast<int>(p);
+        return -1;
+    }
+
+    int find_axis(const PlyElement& element, const char* name) const {
+        const int place = find_property(element, name);
+        if (place >= 0) return place;
         scan_.fail(element.place, std::string("the vertices have no property '") + name + "'");
     }
 

@@ -120,19 +120,17 @@ void mark_boundary(const Topology& topology, Features& features) {
 
 void classify_vertices(const Topology& topology, const std::vector<char>& marked, BoundaryRule rule, Features& features) {
     const std::vector<std::uint8_t> sharp_edges = count_sharp_edges(topology, features);
-    features.curve_neighbours.resize(topology.vertex_count);
     const std::size_t pieces = piece_count(topology.vertex_count);
     std::vector<Index> corners(pieces, 0);
     for_each_piece(topology.vertex_count, pieces, [&](std::size_t piece, std::size_t begin, std::size_t end) {
         for (Index v = static_cast<Index>(begin); v < static_cast<Index>(end); ++v) {
             const VertexKind kind = kind_of(topology, v, sharp_edges[v], marked[v] != 0, rule);
-            const bool has_neighbours = kind == VertexKind::curve || kind == VertexKind::dart;
             features.kind[v] = kind;
-            features.curve_neighbours[v] = has_neighbours ? sharp_neighbours(topology, features, v) : std::array<Index, 2>{-1, -1};
             corners[piece] += kind == VertexKind::corner;
         }
     });
     features.corner_count = std::accumulate(corners.begin(), corners.end(), Index{0});
+    find_curve_neighbours(topology, features);
 }
 
 /// Vertices of a surface without boundary, creases and corners.
@@ -143,6 +141,16 @@ void classify_as_smooth(const Topology& topology, Features& features) {
 }
 
 }  // namespace
+
+void find_curve_neighbours(const Topology& topology, Features& features) {
+    features.curve_neighbours.resize(topology.vertex_count);
+    parallel_for(topology.vertex_count, [&](std::size_t begin, std::size_t end) {
+        for (Index v = static_cast<Index>(begin); v < static_cast<Index>(end); ++v) {
+            const bool has_neighbours = features.kind[v] == VertexKind::curve || features.kind[v] == VertexKind::dart;
+            features.curve_neighbours[v] = has_neighbours ? sharp_neighbours(topology, features, v) : std::array<Index, 2>{-1, -1};
+        }
+    });
+}
 
 Features find_features(const PolygonMesh& mesh, const Topology& topology, const FeatureOptions& options) {
     Features features;

@@ -45,4 +45,7 @@ struct Features {
 /// Classifies edges and vertices. Positions (mesh) are used for the crease angle alone. Linear time.
 Features find_features(const PolygonMesh& mesh, const Topology& topology, const FeatureOptions& options);
 
+/// Fills curve_neighbours of features whose edges and vertices are classified.
+void find_curve_neighbours(const Topology& topology, Features& features);
+
 }  // namespace lcl

@@ -3,10 +3,8 @@
 #include "host/refine/catmull_clark_rules.h"
 
 namespace lcl {
-namespace {
 
-template <class Rows>
-void write_rows(const StepInput& input, Rows& rows) {
+void catmull_clark_rows(const StepInput& input, StencilRows& rows) {
     for (Index v = 0; v < input.topology.vertex_count; ++v) {
         rows.begin();
         add_vertex_point(input, v, 1, rows);
@@ -24,21 +22,11 @@ void write_rows(const StepInput& input, Rows& rows) {
     }
 }
 
-}  // namespace
-
-void catmull_clark_rows(const StepInput& input, PointRows& rows) { write_rows(input, rows); }
-void catmull_clark_rows(const StepInput& input, StencilRows& rows) { write_rows(input, rows); }
-
-void catmull_clark_faces(const StepInput& input, Refinement& refined) {
-    const Topology& topology = input.topology;
-    const Index edge_points = topology.vertex_count, face_points = edge_points + topology.edge_count;
-    refined.mesh.vertex_count = face_points + topology.face_count;
-    FaceList faces(refined.mesh, refined.face_parent, topology.half_edge_count(), 4 * static_cast<std::int64_t>(topology.half_edge_count()));
-    for (Index f = 0; f < topology.face_count; ++f) {
-        Index before = topology.face_offsets[f + 1] - 1;
-        for (Index h = topology.face_offsets[f]; h < topology.face_offsets[f + 1]; before = h++)
-            faces.add({topology.face_vertices[h], edge_points + topology.half_edge_edge[h], face_points + f, edge_points + topology.half_edge_edge[before]}, f);
-    }
+void catmull_clark_odd_rows(const StepInput& input, SummedRows& rows) {
+    for (Index v = 0; v < input.topology.vertex_count; ++v)
+        if (!has_smooth_rule(input.features.kind[v])) rows.add_row_of(v, [&] { add_vertex_point(input, v, 1, rows); });
+    for (Index e = 0; e < input.topology.edge_count; ++e)
+        if (input.features.edge_is_sharp[e]) rows.add_row_of(input.topology.vertex_count + e, [&] { add_edge_point(input, e, 1, rows); });
 }
 
 }  // namespace lcl

@@ -180,7 +180,7 @@ DooSabinLayout lay_out_doo_sabin(const Topology& topology, const Features& featu
     return layout;
 }
 
-void doo_sabin_rows(const StepInput& input, const DooSabinLayout& layout, PointRows& rows) { write_rows(input, layout, rows); }
+void doo_sabin_rows(const StepInput& input, const DooSabinLayout& layout, SummedRows& rows) { write_rows(input, layout, rows); }
 void doo_sabin_rows(const StepInput& input, const DooSabinLayout& layout, StencilRows& rows) { write_rows(input, layout, rows); }
 
 void doo_sabin_faces(const StepInput& input, const DooSabinLayout& layout, Refinement& refined, std::vector<std::uint8_t>* quadrants) {

@@ -66,7 +66,7 @@ SurfaceLocation doo_sabin_vertex(const Topology& topology, const Features& featu
 
 }  // namespace
 
-LocationTracker::LocationTracker(const PolygonMesh& mesh, const Topology& topology, const Features& features, Scheme scheme) : scheme_(scheme) {
+LocationTracker::LocationTracker(const Topology& topology, const Features& features, Scheme scheme) : scheme_(scheme) {
     if (scheme == Scheme::catmull_clark) {
         by_corner_ = true;
         frames_ = corner_frames_of_polygons(topology);
@@ -74,15 +74,15 @@ LocationTracker::LocationTracker(const PolygonMesh& mesh, const Topology& topolo
         frames_.reserve(topology.face_count);
         for (Index f = 0; f < topology.face_count; ++f) frames_.push_back({f, 0, 0, 0, 1, 0, 0, 1});
     } else {
-        for (Index v = 0; v < mesh.vertex_count; ++v) original_.push_back(doo_sabin_vertex(topology, features, v));
+        for (Index v = 0; v < topology.vertex_count; ++v) original_.push_back(doo_sabin_vertex(topology, features, v));
     }
 }
 
 ParameterFrame LocationTracker::corner_frame(Index corner) const { return by_corner_ ? frames_[corner] : quarter_at(frames_[corner / 4], corner % 4); }
 
-void LocationTracker::step(const StepInput& input, const DooSabinLayout* layout, std::vector<std::uint8_t>&& quadrants) {
+void LocationTracker::step(const StepInput& input) {
     if (scheme_ == Scheme::loop) return step_loop();
-    if (scheme_ == Scheme::doo_sabin) return step_doo_sabin(input, *layout, std::move(quadrants));
+    if (scheme_ == Scheme::doo_sabin) return step_doo_sabin(input, *layout_of(input));
     if (input.options.is_two_phase()) return step_two_phase(input.topology);
     if (!by_corner_) {
         std::vector<ParameterFrame> children;
@@ -135,7 +135,7 @@ void LocationTracker::step_loop() {
     frames_ = std::move(children);
 }
 
-void LocationTracker::step_doo_sabin(const StepInput& input, const DooSabinLayout& layout, std::vector<std::uint8_t>&& quadrants) {
+void LocationTracker::step_doo_sabin(const StepInput& input, const DooSabinLayout& layout) {
     const Topology& topology = input.topology;
     std::vector<ParameterFrame> refined(layout.vertex_count);
     for (Index h = 0; h < topology.half_edge_count(); ++h) {
@@ -159,16 +159,18 @@ void LocationTracker::step_doo_sabin(const StepInput& input, const DooSabinLayou
         refined[sector.kept] = sector.closed ? inside(refined[sector.first], 0, 0, 0, 0, 0, 0) : inside(refined[sector.first], -1, -1, 1, 0, 0, 1);
     }
     frames_ = std::move(refined);
-    quadrants_ = std::move(quadrants);
+    Refinement faces;
+    quadrants_.clear();
+    doo_sabin_faces(input, layout, faces, &quadrants_);
     original_.clear();
     points_begin_ = topology.half_edge_count();
     kept_begin_ = layout.kept_begin;
     isolated_begin_ = layout.isolated_begin;
 }
 
-void LocationTracker::locate_by_corners(const PolygonMesh& mesh, std::vector<SurfaceLocation>& out) const {
-    for (Index c = 0; c < mesh.corner_count(); ++c) {
-        SurfaceLocation& location = out[mesh.face_vertices[c]];
+void LocationTracker::locate_by_corners(const Topology& faces, std::vector<SurfaceLocation>& out) const {
+    for (Index c = 0; c < faces.half_edge_count(); ++c) {
+        SurfaceLocation& location = out[faces.face_vertices[c]];
         if (location.face >= 0) continue;
         if (scheme_ == Scheme::loop) location = place(frames_[c / 3], c % 3 == 1, c % 3 == 2);
         else location = place(corner_frame(c), 0, 0);
@@ -185,10 +187,10 @@ void LocationTracker::locate_doo_sabin(std::vector<SurfaceLocation>& out) const 
     }
 }
 
-std::vector<SurfaceLocation> LocationTracker::locations(const PolygonMesh& mesh) const {
+std::vector<SurfaceLocation> LocationTracker::locations(const Topology& faces) const {
     if (!original_.empty()) return original_;
-    std::vector<SurfaceLocation> out(mesh.vertex_count);
-    scheme_ == Scheme::doo_sabin ? locate_doo_sabin(out) : locate_by_corners(mesh, out);
+    std::vector<SurfaceLocation> out(faces.vertex_count);
+    scheme_ == Scheme::doo_sabin ? locate_doo_sabin(out) : locate_by_corners(faces, out);
     return out;
 }
 

@@ -23,20 +23,20 @@ struct ParameterFrame {
 /// - Doo-Sabin: vertices, each the square round the control point, whose middle is its limit; at a boundary the side that is the curve.
 class LocationTracker {
 public:
-    LocationTracker(const PolygonMesh& mesh, const Topology& topology, const Features& features, Scheme scheme);
+    LocationTracker(const Topology& topology, const Features& features, Scheme scheme);
 
-    /// Follows one step. `layout` and `quadrants` are Doo-Sabin's.
-    void step(const StepInput& input, const DooSabinLayout* layout, std::vector<std::uint8_t>&& quadrants);
+    /// Follows one step.
+    void step(const StepInput& input);
 
-    /// One entry for each vertex of the mesh as it is now.
-    std::vector<SurfaceLocation> locations(const PolygonMesh& mesh) const;
+    /// One entry for each vertex of the mesh as it is now, whose faces these are.
+    std::vector<SurfaceLocation> locations(const Topology& faces) const;
 
 private:
     ParameterFrame corner_frame(Index corner) const;
     void step_two_phase(const Topology& topology);
     void step_loop();
-    void step_doo_sabin(const StepInput& input, const DooSabinLayout& layout, std::vector<std::uint8_t>&& quadrants);
-    void locate_by_corners(const PolygonMesh& mesh, std::vector<SurfaceLocation>& out) const;
+    void step_doo_sabin(const StepInput& input, const DooSabinLayout& layout);
+    void locate_by_corners(const Topology& faces, std::vector<SurfaceLocation>& out) const;
     void locate_doo_sabin(std::vector<SurfaceLocation>& out) const;
 
     Scheme scheme_;

@@ -43,6 +43,12 @@ struct Stencils {
     std::vector<double> weights;
 };
 
+/// Channels of the vertices that are refined beside their positions: vertex_count x count.
+struct FurtherChannels {
+    int count = 0;
+    std::vector<double> values;
+};
+
 /// One refinement step.
 struct Refinement {
     PolygonMesh mesh;   ///< refined faces and positions
@@ -69,8 +75,8 @@ struct RefinedSize {
     std::int64_t vertices = 0, edges = 0, faces = 0, corners = 0;
 };
 
-/// What refine() with so many levels will make, foretold in linear time. Errors as refine().
-RefinedSize refined_size(const PolygonMesh& mesh, const Topology& topology, const Features& features, const SchemeOptions& options, int levels);
+/// What refine() with so many levels will make of this mesh, foretold in linear time. Errors as refine().
+RefinedSize refined_size(const Topology& topology, const Features& features, const SchemeOptions& options, int levels);
 
 /// Bytes of memory that the machine has.
 std::int64_t physical_memory();

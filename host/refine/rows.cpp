@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "host/refine/rows.h"
 
+#include <array>
 #include <cmath>
 
 namespace lcl {
@@ -23,40 +24,47 @@ std::vector<double> cosines_of_turn(Index m) {
     return cosines;
 }
 
-PointRows::PointRows(const PolygonMesh& mesh, const Topology& topology, std::size_t row_count, bool with_means)
-    : topology_(topology), positions_(mesh.positions) {
-    result_.reserve(3 * row_count);
-    if (!with_means) return;
-    means_.resize(3 * static_cast<std::size_t>(topology.face_count));
-    for (Index f = 0; f < topology.face_count; ++f) {
-        begin();
-        for (Index h = topology.face_offsets[f]; h < topology.face_offsets[f + 1]; ++h) add(topology.face_vertices[h], 1);
-        for (int c = 0; c < 3; ++c) means_[3 * static_cast<std::size_t>(f) + c] = sum_[c] / topology.degree(f);
-    }
+void SummedRows::add(Index vertex, double weight) {
+    if (weight == 0) return;
+    out_.rows.indices.push_back(vertex);
+    out_.rows.weights.push_back(weight);
 }
 
-void PointRows::prepare_harmonic(Index face) {
-    const Index m = topology_.degree(face), first = topology_.face_offsets[face];
-    harmonic_face_ = face;
-    if (static_cast<Index>(cosines_.size()) != m) cosines_ = cosines_of_turn(m);
-    cosine_sum_ = sine_sum_ = {0, 0, 0};
-    for (Index k = 0; k < m; ++k) {
-        const double* p = &positions_[3 * static_cast<std::size_t>(topology_.face_vertices[first + k])];
-        const double sine = sine_of_turn(k, m);
-        for (int c = 0; c < 3; ++c) {
-            cosine_sum_[c] += cosines_[k] * p[c];
-            sine_sum_[c] += sine * p[c];
-        }
+/// The first sum of a face, or -1 where `first` has none yet: then the next one is noted.
+Index SummedRows::sums_of_face(std::vector<Index>& first, Index face) {
+    if (first.empty()) first.assign(topology_.face_count, -1);
+    const Index known = first[face];
+    if (known < 0) first[face] = out_.sum_count();
+    return known;
+}
+
+void SummedRows::add_sum_entry(Index corner, double weight) {
+    out_.sums.indices.push_back(topology_.face_vertices[corner]);
+    out_.sums.weights.push_back(weight);
+}
+
+void SummedRows::add_mean(Index face, double weight) {
+    if (sums_of_face(mean_of_face_, face) < 0) {
+        const double each = 1.0 / topology_.degree(face);
+        for (Index h = topology_.face_offsets[face]; h < topology_.face_offsets[face + 1]; ++h) add_sum_entry(h, each);
+        end_sum();
     }
+    add(topology_.vertex_count + mean_of_face_[face], weight);
 }
 
 /// weight/m * sum_j cos(2 pi j / m) * (corner j steps on), by the addition theorem from two sums for the whole face.
-void PointRows::add_harmonic(Index corner, double weight) {
-    const Index face = topology_.half_edge_face[corner];
-    if (face != harmonic_face_) prepare_harmonic(face);
-    const Index m = topology_.degree(face), k = corner - topology_.face_offsets[face];
-    add_point(cosine_sum_.data(), weight / m * cosines_[k]);
-    add_point(sine_sum_.data(), weight / m * sine_of_turn(k, m));
+void SummedRows::add_harmonic(Index corner, double weight) {
+    const Index face = topology_.half_edge_face[corner], first = topology_.face_offsets[face], m = topology_.degree(face), k = corner - first;
+    if (static_cast<Index>(cosines_.size()) != m) cosines_ = cosines_of_turn(m);
+    if (sums_of_face(harmonic_of_face_, face) < 0) {
+        for (Index j = 0; j < m; ++j) add_sum_entry(first + j, cosines_[j]);
+        end_sum();
+        for (Index j = 0; j < m; ++j) add_sum_entry(first + j, sine_of_turn(j, m));
+        end_sum();
+    }
+    const Index sum = topology_.vertex_count + harmonic_of_face_[face];
+    add(sum, weight / m * cosines_[k]);
+    add(sum + 1, weight / m * sine_of_turn(k, m));
 }
 
 StencilRows::StencilRows(const Topology& topology, std::size_t row_count) : topology_(topology), entry_of_(topology.vertex_count, 0) {

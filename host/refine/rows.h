@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Two receivers for the rows of a refinement: the rules are written once and give either refined positions at once or stencils. Internal to host/refine.
+// Two receivers for the rows of a refinement: the rules are written once and give either stencils or rows through sums. Internal to host/refine.
 // Both offer begin(), add(vertex, weight), add_mean(face, weight), add_harmonic(corner, weight), end().
 #pragma once
 
-#include <array>
 #include <vector>
 
 #include "host/mesh/topology.h"
@@ -14,33 +13,47 @@ namespace lcl {
 /// cos(2 pi j / m) for j = 0 .. m - 1, exact at quarter turns.
 std::vector<double> cosines_of_turn(Index m);
 
-/// Rows applied to the positions on the way. Linear in the mesh, also at faces and vertices of any degree.
-class PointRows {
+/// Rows with stored weights that go through sums: means of faces, and the two sums of classic Doo-Sabin, are computed once and then taken as further points. So
+/// they are linear in the mesh, also at faces and vertices of any degree.
+struct SparseRows {
+    Stencils sums;               ///< over the old vertices
+    Stencils rows;               ///< over the old vertices, and behind them the sums
+    std::vector<Index> targets;  ///< the refined vertex of each row; empty where row i is that of vertex i
+
+    Index row_count() const { return static_cast<Index>(rows.offsets.size()) - 1; }
+    Index sum_count() const { return static_cast<Index>(sums.offsets.size()) - 1; }
+};
+
+/// Makes them.
+class SummedRows {
 public:
-    /// with_means: face means are needed (Catmull-Clark, Doo-Sabin).
-    PointRows(const PolygonMesh& mesh, const Topology& topology, std::size_t row_count, bool with_means);
+    explicit SummedRows(const Topology& topology) : topology_(topology) {}
 
-    void begin() { sum_ = {0, 0, 0}; }
-    void add(Index vertex, double weight) { add_point(&positions_[3 * static_cast<std::size_t>(vertex)], weight); }
-    void add_mean(Index face, double weight) { add_point(&means_[3 * static_cast<std::size_t>(face)], weight); }
+    void begin() {}
+    void add(Index vertex, double weight);
+    void add_mean(Index face, double weight);
     void add_harmonic(Index corner, double weight);
-    void end() { result_.insert(result_.end(), sum_.begin(), sum_.end()); }
+    void end() { out_.rows.offsets.push_back(out_.rows.indices.size()); }
 
-    std::vector<double> take() { return std::move(result_); }
+    /// One row, of refined vertex `target`.
+    template <class Add>
+    void add_row_of(Index target, const Add& add_entries) {
+        out_.targets.push_back(target);
+        add_entries();
+        end();
+    }
+
+    SparseRows take() { return std::move(out_); }
 
 private:
-    void add_point(const double* p, double weight) {
-        for (int c = 0; c < 3; ++c) sum_[c] += weight * p[c];
-    }
-    void prepare_harmonic(Index face);
+    Index sums_of_face(std::vector<Index>& first, Index face);
+    void add_sum_entry(Index corner, double weight);
+    void end_sum() { out_.sums.offsets.push_back(out_.sums.indices.size()); }
 
     const Topology& topology_;
-    const std::vector<double>& positions_;
-    std::vector<double> means_, result_;
-    std::array<double, 3> sum_{};
-    Index harmonic_face_ = -1;  ///< the face whose cosines_ and sums over its corners are at hand
+    SparseRows out_;
+    std::vector<Index> mean_of_face_, harmonic_of_face_;  ///< numbers of sums, -1 where there is none yet
     std::vector<double> cosines_;
-    std::array<double, 3> cosine_sum_{}, sine_sum_{};
 };
 
 /// Rows kept as stencils; a vertex that is met several times in a row becomes one entry.

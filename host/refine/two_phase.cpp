@@ -42,7 +42,7 @@ struct Numbers {
 
 }  // namespace
 
-void two_phase_rows(const StepInput& input, PointRows& rows) { write_rows(input, rows); }
+void two_phase_rows(const StepInput& input, SummedRows& rows) { write_rows(input, rows); }
 void two_phase_rows(const StepInput& input, StencilRows& rows) { write_rows(input, rows); }
 
 void two_phase_faces(const StepInput& input, Refinement& refined) {

@@ -4,6 +4,8 @@
 #include <Eigen/Dense>
 #include <cmath>
 
+#include "host/scheme/dart_steps.h"
+
 namespace lcl {
 namespace {
 
@@ -82,7 +84,7 @@ double lambda_min_bound(const SchemeOptions& options, int n, double lambda) {
     return 0;
 }
 
-std::vector<double> catmull_clark_dart_weights(int n) {
+Eigen::MatrixXd catmull_clark_dart_step(int n) {
     const int edges = 1, faces = 1 + n;  // places of E_0 and F_0
     Eigen::MatrixXd step = Eigen::MatrixXd::Zero(2 * n + 1, 2 * n + 1);
     for (int j = 0; j < n; ++j)
@@ -98,10 +100,10 @@ std::vector<double> catmull_clark_dart_weights(int n) {
     }
     step.row(edges).setZero();
     step(edges, 0) = step(edges, edges) = 0.5;
-    return stationary_weights(step);
+    return step;
 }
 
-std::vector<double> loop_dart_weights(int n) {
+Eigen::MatrixXd loop_dart_step(int n) {
     Eigen::MatrixXd step = Eigen::MatrixXd::Zero(n + 1, n + 1);
     const double beta = loop_refined_edge_weight(n);
     step(0, 0) = 1 - n * beta;
@@ -114,7 +116,11 @@ std::vector<double> loop_dart_weights(int n) {
     }
     step.row(1).setZero();
     step(1, 0) = step(1, 1) = 0.5;
-    return stationary_weights(step);
+    return step;
 }
+
+std::vector<double> catmull_clark_dart_weights(int n) { return stationary_weights(catmull_clark_dart_step(n)); }
+
+std::vector<double> loop_dart_weights(int n) { return stationary_weights(loop_dart_step(n)); }
 
 }  // namespace lcl

@@ -2,12 +2,19 @@
 #include "host/selftest/selftest.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <map>
 
+#include "host/apply/device_tangents.h"
+#include "host/apply/host_normals.h"
 #include "host/apply/noise.h"
 #include "host/apply/row_transfer.h"
 #include "host/apply/transfer.h"
+#include "host/refine/device_refiner.h"
+#include "host/selftest/surface_check.h"
 #include "host/solve/limit_system.h"
+#include "host/two_phase/umbrella_steps.h"
 
 namespace lcl {
 namespace {
@@ -73,17 +80,31 @@ std::vector<double> values_for(Index rows, int channels, int seed) {
     return values;
 }
 
+std::string what_of(const Case& c, int channels, Real real) {
+    const char* const type = real == Real::single ? "single" : real == Real::full ? "double" : "mixed";
+    return c.name + ", " + std::to_string(channels) + (channels == 1 ? " channel, " : " channels, ") + type;
+}
+
+/// A row sums at most 60 products of numbers of size 1 and weights that sum to 1; pairs of floats hold 2^-48.
+double rounding_of(const Context& context, Real real) {
+    const bool pairs = real == Real::wide && !context.device().has_double;
+    return 64 * (real == Real::single ? std::ldexp(1, -24) : pairs ? std::ldexp(1, -46) : std::ldexp(1, -52));
+}
+
 class Selftest {
 public:
     Selftest(std::shared_ptr<Context> context, const Case& c, int channels, Real real, std::function<void(const SelftestResult&)> report)
-        : system_(make(std::move(context), c)), A_(*system_->A), plan_(A_.plan()), channels_(channels), real_(real), report_(std::move(report)) {
-        what_ = c.name + ", " + std::to_string(channels) + (channels == 1 ? " channel, " : " channels, ") +
-                (real == Real::single ? "single"
-                 : real == Real::full ? "double"
-                                      : "mixed");
-        // A row sums at most 60 products of numbers of size 1 and weights that sum to 1; pairs of floats hold 2^-48.
-        const bool pairs = real == Real::wide && !A_.context().device().has_double;
-        tolerance_ = 64 * (real == Real::single ? std::ldexp(1, -24) : pairs ? std::ldexp(1, -46) : std::ldexp(1, -52));
+        : mesh_(c.mesh),
+          topology_(build_topology(mesh_)),
+          features_(find_features(mesh_, topology_, c.features)),
+          system_(make_limit_system(std::move(context), mesh_, topology_, features_, c.scheme, {})),
+          A_(*system_->A),
+          plan_(A_.plan()),
+          channels_(channels),
+          real_(real),
+          report_(std::move(report)) {
+        what_ = what_of(c, channels, real);
+        tolerance_ = rounding_of(A_.context(), real);
     }
 
     bool run() {
@@ -91,6 +112,7 @@ public:
         x_ = values_for(plan_.vertex_count, channels_, 2);
         ax_ = host_apply(plan_, x_, channels_);
         limit();
+        if (channels_ == 3) normals();
         series();
         morphs();
         if (real_ == Real::wide) residual();
@@ -99,11 +121,6 @@ public:
     }
 
 private:
-    static std::unique_ptr<LimitSystem> make(std::shared_ptr<Context> context, const Case& c) {
-        const Topology topology = build_topology(c.mesh);
-        return make_limit_system(std::move(context), c.mesh, topology, find_features(c.mesh, topology, c.features), c.scheme, {});
-    }
-
     Field field(const std::vector<double>& values, Real real) {
         Field field = A_.make_field(channels_, real);
         field.upload(values.data(), 0, plan_.vertex_count);
@@ -126,6 +143,38 @@ private:
         Field y = field(x_, real_);
         A_.limit_points(x, y, plan_.all_rows());
         compare("lcl_limit_points", download(y), ax_, tolerance_);
+    }
+
+    /// Of the mesh itself, whose tangents are well apart: an angle is off by some ten times what a row is.
+    void normals() {
+        TangentPlan tangent_plan = build_tangent_plan(plan_, topology_, features_, system_->scheme);
+        std::vector<double> points;
+        for (Index row = 0; row < plan_.vertex_count; ++row)
+            for (int c = 0; c < 3; ++c) points.push_back(static_cast<float>(mesh_.positions[3 * static_cast<std::size_t>(plan_.vertex_of_row[row]) + c]));
+        const Normals expected = host_normals(plan_, tangent_plan, points);
+        DeviceTangents tangents(A_, std::move(tangent_plan));
+        const bool ends_in_floats = real_ == Real::wide && !A_.context().device().has_double;
+        const double tolerance = 16 * (ends_in_floats ? 64 * std::ldexp(1, -24) : tolerance_);
+        const Field x = field(points, real_);
+        Field y = field(x_, real_), n = field(x_, real_), t = field(x_, real_), b = field(x_, real_);
+        tangents.normals(x, &y, n);
+        compare("lcl_limit_normals", download(n), expected.vertices, tolerance);
+        compare("lcl_limit_normals (points)", download(y), host_apply(plan_, points, channels_), 4 * tolerance_);
+        compare("lcl_sector_normals", tangents.read_sides(), expected.sides, tolerance);
+        tangents.normals(x, nullptr, n);
+        compare("lcl_normals", download(n), expected.vertices, tolerance);
+        tangents.frames(x, n, t, b);
+        compare("lcl_frames", download(n), expected.vertices, tolerance);
+        compare("lcl_sector_frames", tangents.read_sides(), expected.sides, tolerance);
+        const std::vector<double> tangent = download(t);
+        std::vector<double> across = download(b);
+        for (std::size_t i = 0; i < across.size(); i += 3)
+            for (std::size_t c = 0; c < 3; ++c) {  // normal x tangent
+                const std::size_t d = i + (c + 1) % 3, e = i + (c + 2) % 3;
+                across[i + c] -= expected.vertices[d] * tangent[e] - expected.vertices[e] * tangent[d];
+            }
+        compare("lcl_frames (bitangents)", across, std::vector<double>(across.size(), 0.0), tolerance);
+        A_.context().finish();
     }
 
     /// y = a x + b (m - A x) + b_jacobi (m - A x) / A_ii + c d, all terms.
@@ -320,6 +369,9 @@ private:
         compare("lcl_scatter_rows", download(to), expected, tolerance_);
     }
 
+    const PolygonMesh mesh_;
+    const Topology topology_;
+    const Features features_;
     const std::unique_ptr<LimitSystem> system_;
     DeviceOperator& A_;
     const Plan& plan_;
@@ -346,6 +398,116 @@ bool check_noise(const std::shared_ptr<Context>& context, Real real, const std::
     return result.passed();
 }
 
+/// Limit points, normals and handles that are no mesh's own, on every kind of umbrella; one vertex in seven is free.
+UmbrellaTargets rough_targets(const Umbrellas& umbrellas) {
+    UmbrellaTargets targets;
+    targets.points = values_for(umbrellas.count, 3, 1);
+    targets.normals = values_for(umbrellas.count, 3, 2);
+    for (Index u = 0; u < umbrellas.count; ++u) {
+        double* const normal = &targets.normals[3 * static_cast<std::size_t>(u)];
+        const double length = std::sqrt(normal[0] * normal[0] + normal[1] * normal[1] + normal[2] * normal[2]);
+        const bool is_free = u % 7 == 0 || !umbrellas.masks[umbrellas.mask_of[u]].has_tangents;
+        for (int c = 0; c < 3; ++c) normal[c] = is_free ? 0 : normal[c] / length;
+        targets.constrained.push_back(u % 7 != 0);
+        targets.handles.push_back(0.5 + u % 3);
+    }
+    return targets;
+}
+
+/// What every kernel of the two-phase scheme gives one after the other. Numbers are of size 1, or are made so.
+std::vector<std::pair<const char*, std::vector<double>>> two_phase_results(UmbrellaSteps& steps, const PolygonMesh& refined, const FairRows& rows) {
+    std::vector<std::pair<const char*, std::vector<double>>> results;
+    std::vector<double> points;
+    const double count = refined.vertex_count;
+    steps.upload(refined.positions);
+    const RepairFindings found = steps.repair();
+    steps.download(points);
+    results.push_back({"lcl_umbrella_repair", points});
+    results.push_back({"lcl_umbrella_repair (distances)", found.distances});
+    results.push_back({"lcl_umbrella_repair (sides)", found.sides});
+    steps.set_fairness(rows, 2);
+    results.push_back({"lcl_fair_laplacian", {steps.energy() / count}});
+    double square = steps.begin();
+    std::vector<double> products, squares{square / count};
+    for (int step = 0; step < 3; ++step) {
+        products.push_back(steps.apply() / count);
+        const double before = square;
+        square = steps.update(before / (products.back() * count));
+        squares.push_back(square / count);
+        steps.turn(square / before);
+    }
+    results.push_back({"lcl_fair_apply", products});
+    results.push_back({"lcl_fair_update", squares});
+    steps.download(points);
+    results.push_back({"lcl_fair_turn", points});
+    steps.scale();
+    steps.download(points);
+    results.push_back({"lcl_umbrella_scale", points});
+    return results;
+}
+
+/// A row sums some twenty products of numbers of size 1 by weights up to 10; three steps of conjugate gradients carry that on.
+bool check_two_phase(const std::shared_ptr<Context>& context, const std::function<void(const SelftestResult&)>& report) {
+    const Case c = cases()[1];
+    SchemeOptions scheme;
+    scheme.lambda = 0.3;
+    const Topology topology = build_topology(c.mesh);
+    const Umbrellas umbrellas = build_umbrellas(topology, find_features(c.mesh, topology, c.features));
+    const UmbrellaTargets targets = rough_targets(umbrellas);
+    const Refinement refined = refine(c.mesh, c.features, scheme, 1);
+    const Topology fine = build_topology(refined.mesh);
+    const FairRows rows = build_fair_rows(umbrellas, fine, find_features(refined.mesh, fine, refined.features));
+    const auto found = two_phase_results(*make_device_steps(context, umbrellas, targets), refined.mesh, rows);
+    const auto expected = two_phase_results(*make_host_steps(umbrellas, targets), refined.mesh, rows);
+    bool passed = true;
+    for (std::size_t i = 0; i < found.size(); ++i) {
+        const SelftestResult result{found[i].first, c.name + ", double", largest_difference(found[i].second, expected[i].second), std::ldexp(1, -40)};
+        report(result);
+        passed = result.passed() && passed;
+    }
+    return passed;
+}
+
+/// The kernel that gives each refined row of a step.
+std::vector<std::string> kernels_of_rows(const RefinerStep& step) {
+    const Index edges = step.topology.vertex_count, faces = edges + step.topology.edge_count;
+    const bool is_loop = step.bulk == BulkRule::loop;
+    std::vector<std::string> kernels(step.vertex_count, "lcl_refine_rows");
+    if (step.bulk == BulkRule::none) return kernels;
+    std::fill(kernels.begin(), kernels.begin() + edges, is_loop ? "lcl_refine_loop_vertices" : "lcl_refine_vertices");
+    std::fill(kernels.begin() + edges, kernels.begin() + faces, is_loop ? "lcl_refine_loop_edges" : "lcl_refine_edges");
+    std::fill(kernels.begin() + faces, kernels.end(), "lcl_refine_faces");
+    for (const Index row : step.rows.targets) kernels[row] = "lcl_refine_rows";
+    return kernels;
+}
+
+/// Two levels of refinement, of which the first takes the case's polygons, creases and alpha, and the second quads or triangles.
+bool check_refinement(const std::shared_ptr<Context>& context, const Case& c, Real real, const std::function<void(const SelftestResult&)>& report) {
+    constexpr int levels = 2, channels = 3;
+    Topology topology = build_topology(c.mesh);
+    Features features = find_features(c.mesh, topology, c.features);
+    const auto refiner = std::make_shared<const Refiner>(std::move(topology), std::move(features), c.scheme, levels);
+    const std::vector<double> values = values_for(c.mesh.vertex_count, channels, 1);
+    std::vector<double> found(static_cast<std::size_t>(refiner->vertex_count()) * channels), expected(found.size());
+    refiner->apply(values.data(), channels, channels, expected.data(), channels);
+    DeviceRefiner(context, refiner).apply(values.data(), channels, channels, real, found.data(), channels);
+    const std::vector<std::string> kernels = kernels_of_rows(refiner->steps().back());
+    std::map<std::string, std::array<std::vector<double>, 2>> by_kernel;  // found, expected
+    for (std::size_t i = 0; i < found.size(); ++i) {
+        auto& lists = by_kernel[kernels[i / channels]];
+        lists[0].push_back(found[i]);
+        lists[1].push_back(expected[i]);
+    }
+    bool passed = true;
+    for (const auto& [kernel, lists] : by_kernel) {
+        // The device scales values, of a diagonal of up to 3.5, to a diagonal of 1.
+        const SelftestResult result{kernel, what_of(c, channels, real), largest_difference(lists[0], lists[1]), 3.5 * levels * rounding_of(*context, real)};
+        report(result);
+        passed = passed && result.passed();
+    }
+    return passed;
+}
+
 }  // namespace
 
 bool run_selftest(const std::shared_ptr<Context>& context, const std::function<void(const SelftestResult&)>& report) {
@@ -353,10 +515,15 @@ bool run_selftest(const std::shared_ptr<Context>& context, const std::function<v
     for (const Case& c : cases())
         for (const Real real : {Real::single, Real::wide, Real::full}) {
             if (real == Real::full && !context->device().has_double) continue;
+            if (real != Real::wide) passed = check_surface(context, c.name, c.mesh, c.features, c.scheme, real, report) && passed;
             for (const int channels : {1, 2, 3, 9}) passed = Selftest(context, c, channels, real, report).run() && passed;
+            passed = check_refinement(context, c, real, report) && passed;
         }
     passed = check_noise(context, Real::single, report) && passed;
-    if (context->device().has_double) passed = check_noise(context, Real::full, report) && passed;
+    if (context->device().has_double) {
+        passed = check_noise(context, Real::full, report) && passed;
+        passed = check_two_phase(context, report) && passed;
+    }
     return passed;
 }
 

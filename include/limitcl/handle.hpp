@@ -37,6 +37,10 @@ using ContextHandle = Handle<lcl_context, lcl_context_retain, lcl_context_releas
 using MeshHandle = Handle<lcl_mesh, lcl_mesh_retain, lcl_mesh_release>;
 using OperatorHandle = Handle<lcl_operator, lcl_operator_retain, lcl_operator_release>;
 using FieldHandle = Handle<lcl_field, lcl_field_retain, lcl_field_release>;
+using RefinerHandle = Handle<lcl_refiner, lcl_refiner_retain, lcl_refiner_release>;
+using TangentsHandle = Handle<lcl_tangents, lcl_tangents_retain, lcl_tangents_release>;
+using LimitSurfaceHandle = Handle<lcl_limit_surface, lcl_limit_surface_retain, lcl_limit_surface_release>;
+using SamplesHandle = Handle<lcl_samples, lcl_samples_retain, lcl_samples_release>;
 
 }  // namespace limitcl
 

@@ -31,6 +31,13 @@ inline Mesh read_mesh(const void* bytes, std::size_t size, Format format, const 
     return Mesh(MeshHandle(mesh));
 }
 
+/// The same with the normals of vertices that the file holds (OBJ vn, PLY nx ny nz, OFF with N), for Mesh::file_normals.
+inline Mesh read_mesh_with_normals(const std::string& path, Format format = Format::by_ending) {
+    lcl_mesh mesh = nullptr;
+    check(lcl_mesh_read_with_normals(path.c_str(), static_cast<lcl_format>(format), &mesh));
+    return Mesh(MeshHandle(mesh));
+}
+
 /// Writes completely or not at all. What the format cannot hold is told by mesh.warnings(). path "-" is standard output and needs a format.
 /// Errors: LCL_ERROR_WRITE, LCL_ERROR_UNSUPPORTED (STL holds triangles only), LCL_ERROR_INVALID_ARGUMENT (unknown ending).
 inline void write_mesh(const Mesh& mesh, const std::string& path, Format format = Format::by_ending) {

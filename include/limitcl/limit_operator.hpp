@@ -3,6 +3,8 @@
 #ifndef LIMITCL_LIMIT_OPERATOR_HPP
 #define LIMITCL_LIMIT_OPERATOR_HPP
 
+#include <array>
+
 #include "device.hpp"
 #include "scheme.hpp"
 
@@ -56,6 +58,11 @@ struct FeatureWeights {
     lcl_feature_options to_c() const;
 };
 
+/// Limit points and unit limit normals, vertex_count x 3 each.
+struct LimitNormals {
+    std::vector<double> points, normals;
+};
+
 /// The limit operator: row i gives the limit point of vertex i on the subdivision surface of the mesh. Rows sum to one. Copies share it. Operators of your own
 /// take its place in solves, series, filters and morphs.
 class LimitOperator {
@@ -87,6 +94,9 @@ public:
 
     /// Limit points of `points` (vertex_count x channels, model units), through host memory. One pass.
     std::vector<double> limit_points(ArrayView<double> points, int channels = 3, Precision precision = Precision::mixed) const;
+    /// Limit points and normals of `points` (vertex_count x 3, model units; empty: the mesh's), through host memory; 0 0 0 at isolated vertices, at creases the
+    /// normalised mean of the sides. mesh: the one that A was made of. Several frames: LimitTangents.
+    LimitNormals limit_normals(const Mesh& mesh, ArrayView<double> points = {}, Precision precision = Precision::mixed) const;
 
 private:
     LimitOperator(const Context& context, OperatorHandle handle) : context_(context), handle_(std::move(handle)) {}
@@ -133,6 +143,35 @@ inline double step(const LimitOperator& A, double a, double b, const Field& M, c
     check(lcl_operator_step(A.get(), a, b, 0.0, M.get(), x.get(), nullptr, y.get(), 0, -1, &residual));
     return residual;
 }
+
+/// One side of a vertex with several: the faces between two sharp edges.
+struct LimitSide {
+    std::int32_t vertex = 0;
+    std::int32_t face = 0;  ///< its first, in face order
+    std::array<double, 3> normal{};
+};
+
+/// Limit tangents at the vertices of a mesh, for normals on the device: what is a limit and what a choice, the C API says. Copies share them.
+class LimitTangents {
+public:
+    /// mesh: the one that A was made of, faces and sharp features unchanged, else Error LCL_ERROR_INVALID_ARGUMENT.
+    LimitTangents(const LimitOperator& A, const Mesh& mesh);
+
+    lcl_tangents get() const { return handle_.get(); }
+    /// Unit normals of x, and limit = A x. Fields of three channels and one precision. Returns at once. About two passes.
+    void apply(const Field& x, Field& limit, Field& normals) const { check(lcl_tangents_apply(get(), x.get(), limit.get(), normals.get(), nullptr, nullptr)); }
+    void apply(const Field& x, Field& normals) const { check(lcl_tangents_apply(get(), x.get(), nullptr, normals.get(), nullptr, nullptr)); }
+    /// Orthonormal frames: normal, tangent, normal x tangent.
+    void frames(const Field& x, Field& normals, Field& tangents, Field& bitangents) const {
+        check(lcl_tangents_apply(get(), x.get(), nullptr, normals.get(), tangents.get(), bitangents.get()));
+    }
+    /// Sides of inner crease vertices and corners, with the normals that the last apply() or frames() found; waits.
+    std::vector<LimitSide> sides() const;
+
+private:
+    LimitOperator operator_;
+    TangentsHandle handle_;
+};
 
 inline LimitOperator::LimitOperator(const Context& context, const Mesh& mesh, const SchemeOptions& options) : context_(context) {
     detail::require_ratios(options, mesh);
@@ -228,6 +267,31 @@ inline std::vector<double> LimitOperator::limit_points(ArrayView<double> points,
     std::vector<double> out(points.size());
     check(lcl_limit_points(get(), points.data(), 0, channels, static_cast<lcl_precision>(precision), out.data(), 0));
     return out;
+}
+
+inline LimitNormals LimitOperator::limit_normals(const Mesh& mesh, ArrayView<double> points, Precision precision) const {
+    if (!points.empty()) detail::require_values(*this, points.size(), 3, "points");
+    const std::size_t size = 3 * static_cast<std::size_t>(vertex_count());
+    LimitNormals out{std::vector<double>(size), std::vector<double>(size)};
+    check(lcl_limit_normals(get(), mesh.get(), points.empty() ? nullptr : points.data(), 0, static_cast<lcl_precision>(precision), out.points.data(), 0,
+                            out.normals.data(), 0));
+    return out;
+}
+
+inline LimitTangents::LimitTangents(const LimitOperator& A, const Mesh& mesh) : operator_(A) {
+    lcl_tangents tangents = nullptr;
+    check(lcl_tangents_create(A.get(), mesh.get(), &tangents));
+    handle_ = TangentsHandle(tangents);
+}
+
+inline std::vector<LimitSide> LimitTangents::sides() const {
+    const auto count = static_cast<std::size_t>(lcl_tangents_side_count(get()));
+    std::vector<std::int32_t> vertices(count), faces(count);
+    std::vector<double> normals(3 * count);
+    check(lcl_tangents_get_sides(get(), vertices.data(), faces.data(), normals.data()));
+    std::vector<LimitSide> sides(count);
+    for (std::size_t s = 0; s < count; ++s) sides[s] = {vertices[s], faces[s], {normals[3 * s], normals[3 * s + 1], normals[3 * s + 2]}};
+    return sides;
 }
 
 inline Field::Field(const LimitOperator& A, int channels, Precision precision) : operator_(A) {

@@ -100,8 +100,10 @@ typedef struct lcl_mesh_s* lcl_mesh;                   /**< polygons, points, sh
 typedef struct lcl_operator_s* lcl_operator;           /**< the limit operator A of one mesh and scheme on one context */
 typedef struct lcl_field_s* lcl_field;                 /**< n x c values that stay on a device */
 typedef struct lcl_task_s* lcl_task;                   /**< a call that runs beside the caller */
+typedef struct lcl_refiner_s* lcl_refiner;             /**< a refinement of one mesh, made once and applied often */
 typedef struct lcl_limit_surface_s* lcl_limit_surface; /**< the limit surface of a mesh as patches, with its control points on a context's device */
 typedef struct lcl_samples_s* lcl_samples;             /**< places on a limit surface, found once and evaluated often */
+typedef struct lcl_tangents_s* lcl_tangents;           /**< limit tangents at the vertices of an operator's mesh, for normals */
 
 /* ---------------------------------------------------------------- devices and contexts */
 
@@ -181,6 +183,10 @@ LCL_API lcl_status lcl_mesh_create(const lcl_mesh_data* data, lcl_mesh* mesh);
 LCL_API lcl_status lcl_mesh_read(const char* path, lcl_format format, lcl_mesh* mesh);
 /** The same from bytes in memory; `name` stands in messages. */
 LCL_API lcl_status lcl_mesh_read_memory(const void* bytes, size_t size, lcl_format format, const char* name, lcl_mesh* mesh);
+/** The same two, and the normals of the vertices that the file holds are kept for lcl_mesh_get_normals: OBJ vn (the mean of those of a vertex's corners), PLY
+ * nx ny nz, OFF with N. Other formats have none. Reading them takes time, so lcl_mesh_read does not. */
+LCL_API lcl_status lcl_mesh_read_with_normals(const char* path, lcl_format format, lcl_mesh* mesh);
+LCL_API lcl_status lcl_mesh_read_memory_with_normals(const void* bytes, size_t size, lcl_format format, const char* name, lcl_mesh* mesh);
 /** Writes completely or not at all, a sound mesh. Counts as a change of the mesh: what the format cannot hold is added to its notes of kind LCL_NOTE_WARNING.
  * path "-" is standard output and needs a format. */
 LCL_API lcl_status lcl_mesh_write(lcl_mesh mesh, const char* path, lcl_format format);
@@ -201,6 +207,9 @@ LCL_API lcl_status lcl_mesh_get_points(lcl_mesh mesh, double* points, size_t str
 LCL_API lcl_status lcl_mesh_set_points(lcl_mesh mesh, const double* points, size_t stride);
 /** Unit normals that a writer puts beside the points (OBJ vn, PLY nx ny nz, OFF NOFF); NULL: none. vertex_count x 3. */
 LCL_API lcl_status lcl_mesh_set_normals(lcl_mesh mesh, const double* normals);
+/** Normals as the file that the mesh was read from holds them, of any length: vertex_count x 3, NaN where the file gives a vertex none. LCL_ERROR_BAD_INPUT
+ * where it holds no normals at all; LCL_ERROR_INVALID_ARGUMENT for a mesh that was not read with them, or whose points were changed since. */
+LCL_API lcl_status lcl_mesh_get_normals(lcl_mesh mesh, double* normals);
 
 /** Sharp features, beside the boundary. */
 typedef LCL_ENUM(lcl_boundary){
@@ -353,6 +362,44 @@ typedef LCL_ENUM(lcl_precision){LCL_PRECISION_MIXED = 0 /**< float sweeps, resid
 LCL_API lcl_status lcl_limit_points(lcl_operator A, const double* points, size_t stride, int32_t channels, lcl_precision precision, double* out,
                                     size_t out_stride);
 
+/* ---------------------------------------------------------------- limit normals and tangents at vertices */
+
+/* The normal of the limit surface at the limit of each vertex, t1 x t2 / |t1 x t2|, outwards where the faces are oriented so. A vertex has one normal a sector,
+ * the faces between two sharp edges or all of them; a vertex with several (inner creases, corners) gets their normalised mean, and each of them is a side.
+ * Isolated vertices have 0 0 0, as places where the tangents are parallel and creases whose sides cancel. Exact limits (left eigenvectors of the subdivision):
+ * - smooth vertices of at least three faces, darts of Catmull-Clark and Loop: both tangents round the vertex;
+ * - boundary and crease curves: along and across, Catmull-Clark up to 4 faces a sector, Loop up to 6, Doo-Sabin any; one face: the plane of the two edges;
+ * - corners: the plane of the two sharp edges for one face, Loop up to 2, Doo-Sabin any; where the edges form a straight line, what the surface leaves it by.
+ * Elsewhere the surface has no tangent plane, or one that shows only infinitely near, and the normal is a choice: curves of more faces and other corners take
+ * the tangents along and across that curves have; smooth vertices of two faces E_0 - E_1 and the difference of the faces, corners without two sharp edges
+ * and Doo-Sabin's darts the tangents of a smooth vertex.
+ * Loop's and Doo-Sabin's surfaces fold over in hollow corners (above 180 degrees), and so do their normals. lambda changes no normal, alpha those of darts
+ * alone (lambda 1 leaves no surface to have one, and the one of smaller lambda is given). Vertices outside a subset keep their points and still have the normal
+ * of the surface at their limit points. */
+
+/** Makes tangents of all vertices for normals: those of smooth rings use the operator's neighbours, others get stencils of their own, some 50 bytes a
+ * neighbour. mesh: the one that A was made of, faces and sharp features unchanged (LCL_ERROR_INVALID_ARGUMENT where vertices differ); points do not matter.
+ * Linear time. LCL_ERROR_INVALID_ARGUMENT for operators of your own. */
+LCL_API lcl_status lcl_tangents_create(lcl_operator A, lcl_mesh mesh, lcl_tangents* tangents);
+LCL_API void lcl_tangents_retain(lcl_tangents tangents);
+LCL_API void lcl_tangents_release(lcl_tangents tangents);
+/** limit = A x and unit normals, on the device; returns at once. x: points, three channels. All fields are A's, of one precision, and differ; limit may be
+ * NULL. tangent and bitangent, both or neither NULL: the rest of an orthonormal frame, the first sector's direction along the curve (curves), to the first edge
+ * (else), turned into the plane of the normal, and normal x tangent; with them limit costs a pass of its own. About two passes. Normals and tangents are
+ * not centred or scaled; ghosts keep what their rows hold. */
+LCL_API lcl_status lcl_tangents_apply(lcl_tangents tangents, lcl_field x, lcl_field limit, lcl_field normals, lcl_field tangent, lcl_field bitangent);
+/** Number of sides: sectors of the vertices that have more than one. */
+LCL_API int32_t lcl_tangents_side_count(lcl_tangents tangents);
+/** Of each side the vertex, the first face in face order (the sector runs on from it to the next sharp edge), and the unit normal that the last
+ * lcl_tangents_apply found, for which this waits. Sides of a vertex follow each other. vertices, faces: side_count; normals: side_count x 3; each may be
+ * NULL. LCL_ERROR_INVALID_ARGUMENT for normals before the first apply. */
+LCL_API lcl_status lcl_tangents_get_sides(lcl_tangents tangents, int32_t* vertices, int32_t* faces, double* normals);
+/** The same in one call through host memory. points: vertex_count rows of three, `stride` values apart (0: 3), NULL: the mesh's. limit_points, normals:
+ * vertex_count rows of three, limit_stride and normal_stride values apart (0: 3); limit_points may be NULL or points. Normals are exact to some 1e-7 over the
+ * length of the edges relative to the diagonal in single precision, to 1e-7 in mixed where the device has no double precision, else to rounding. */
+LCL_API lcl_status lcl_limit_normals(lcl_operator A, lcl_mesh mesh, const double* points, size_t stride, lcl_precision precision, double* limit_points,
+                                     size_t limit_stride, double* normals, size_t normal_stride);
+
 /* ---------------------------------------------------------------- solving A P = M */
 
 typedef LCL_ENUM(lcl_solver){LCL_SOLVER_AUTO = 0, LCL_SOLVER_PIA = 1,         LCL_SOLVER_WPIA = 2,      LCL_SOLVER_JACOBI = 3,
@@ -490,13 +537,93 @@ typedef struct lcl_refine_options {
 #define LCL_REFINE_OPTIONS_INIT \
     { (uint32_t)sizeof(lcl_refine_options), 0 }
 
-/** Refines uniformly, in double on the host. alpha_auto, subset and owned are not looked at. alpha and lambda rule the first refinement alone (lambda: the
- * two-phase first step, which gives the mesh M^1); the result is read with alpha 0 and lambda 0, and carries refined creases and corners. Colours and scalar
- * properties are refined as channels; texture coordinates are dropped with a note. */
+/** Refines uniformly, in double on all cores of the host. alpha_auto, subset and owned are not looked at. alpha and lambda rule the first refinement alone
+ * (lambda: the two-phase first step, which gives the mesh M^1); the result is read with alpha 0 and lambda 0, and carries refined creases and corners. Colours
+ * and scalar properties are refined as channels; texture coordinates are dropped with a note. */
 LCL_API lcl_status lcl_mesh_refine(lcl_mesh mesh, const lcl_scheme_options* scheme, const lcl_refine_options* options, lcl_mesh* refined);
 /** Where each vertex of a refined mesh lies on the original's surface, in the parameters of `limitcl evaluate`: faces (-1: isolated) and corners: vertex_count;
  * uv: vertex_count x 2. */
 LCL_API lcl_status lcl_mesh_get_locations(lcl_mesh refined, int32_t* faces, int32_t* corners, double* uv);
+
+/** The topology of a refinement, made once for values that change: points of every frame, colours, other channels. context: the device that
+ * lcl_refiner_apply uses; NULL: the host, in double. Options, time and errors as lcl_mesh_refine; the refiner keeps what it needs of the mesh's faces and
+ * features as they are now, and the mesh: about 110 bytes a vertex of the mesh before the last level (on the device 60), and four a corner of the refined one.
+ */
+LCL_API lcl_status lcl_refiner_create(lcl_context context, lcl_mesh mesh, const lcl_scheme_options* scheme, const lcl_refine_options* options,
+                                      lcl_refiner* refiner);
+LCL_API void lcl_refiner_retain(lcl_refiner refiner);
+LCL_API void lcl_refiner_release(lcl_refiner refiner);
+/** Number of refined vertices. */
+LCL_API int32_t lcl_refiner_vertex_count(lcl_refiner refiner);
+/** What lcl_mesh_refine gives, with the points and properties that the mesh has now (in double on the host). */
+LCL_API lcl_status lcl_refiner_get_mesh(lcl_refiner refiner, lcl_mesh* refined);
+/** Refined values in the order of refined vertices. values: n x channels, n the vertices of the mesh, rows `stride` values apart (0: channels); out: the
+ * refined vertices x channels, `out_stride` values apart (0: channels), which may not overlap with values. precision: of the sums, as for lcl_limit_points; on
+ * the device values are centred and scaled, SINGLE loses about 1e-7 of their size a level. LCL_ERROR_BAD_INPUT for values that are not finite,
+ * LCL_ERROR_MEMORY where the device has no room. What lies between the levels stays on the device for the next call. */
+LCL_API lcl_status lcl_refiner_apply(lcl_refiner refiner, const double* values, size_t stride, int32_t channels, lcl_precision precision, double* out,
+                                     size_t out_stride);
+
+/* ---------------------------------------------------------------- the two-phase scheme: tangent planes, shape handles, fairness */
+
+typedef struct lcl_two_phase_options {
+    uint32_t struct_size;
+    int32_t skip_normals;        /**< 1: normals that cannot be asked for are left out and counted, instead of refused */
+    const double* normals;       /**< NULL, or vertex_count x 3: the normal that the surface is to have at each vertex, of any length above 0; 0 0 0: free */
+    const double* handles;       /**< NULL, or one shape handle S > 0 a vertex; rules over the next two */
+    double convex_handle;        /**< S of convex vertices, 0: 1. A vertex is convex where the angle inside the solid is below 180 degrees at every edge */
+    double other_handle;         /**< S of the others, 0: 1 */
+    double fair;                 /**< W, weight of fairness; 0: none. 1 takes most bumps out, 100 nearly all that the constraints allow */
+    const char* const* channels; /**< NULL, or names of channel_count properties that are interpolated like x, y, z; the others are only refined */
+    size_t channel_count;
+} lcl_two_phase_options;
+#define LCL_TWO_PHASE_OPTIONS_INIT \
+    { (uint32_t)sizeof(lcl_two_phase_options), 0, NULL, NULL, 0.0, 0.0, 0.0, NULL, 0 }
+
+typedef struct lcl_two_phase_report {
+    uint32_t struct_size;
+    int32_t normal_count;     /**< normals that the surface has now */
+    int32_t skipped_normals;  /**< left out, with skip_normals */
+    int32_t scaled_normals;   /**< that were not of unit length */
+    int32_t wrong_side_count; /**< normals on the other side of the surface than the one it had without them: it may fold there */
+    int32_t wrong_side[10];   /**< the first of these vertices */
+    int32_t convex_count;     /**< convex vertices; counted where convex_handle and other_handle differ */
+    int32_t fair_iterations;
+    int32_t fair_converged;
+    double largest_repair; /**< largest distance from a vertex to its limit point before the repair, model units */
+    double max_error;      /**< the same in the result: rounding */
+    double energy[2];      /**< |L X|^2 before and after fairness, squares of model units; NaN without */
+    double seconds;        /**< of all but the solve */
+} lcl_two_phase_report;
+#define LCL_TWO_PHASE_REPORT_INIT \
+    { (uint32_t)sizeof(lcl_two_phase_report), 0, 0, 0, 0, {0}, 0, 0, 0, 0.0, 0.0, {0.0, 0.0}, 0.0 }
+
+/** Refined control mesh M^1 whose Catmull-Clark surface passes through the vertices Q of `mesh` exactly, however far the solve went (two-phase paper):
+ * 1. A_lambda P = Q is solved, and M^1 made of P by the first refinement with lambda (lcl_mesh_refine). In it every vertex of `mesh` has an umbrella, its edge
+ *    and face points, that no other vertex has a part in. All that follows is done umbrella by umbrella.
+ * 2. Position repair, eq. 7: the least change that brings the limit point to Q.
+ * 3. Tangent planes, eq. 15: the least change that makes the plane at the limit point orthogonal to the normal N. (Source slip: the scanned text gives its two
+ *    tangents the same weights.) At boundary vertices by their own masks. A normal can be asked for at vertices without a sharp edge and three faces or more,
+ *    and on boundary curves with 2 to 4 faces; not at corners, on creases and their ends, and outside the subset. Where (t1 x t2).N <= 0 before, the surface
+ *    has to turn over: wrong_side tells.
+ * 4. Fairness: X that minimises |X - X_0|^2 + W |L X|^2 under the same constraints, X_0 the repaired M^1 and L its umbrella Laplacian (mean of the edge
+ *    neighbours minus the vertex; on boundary and crease curves, of those along the curve; no row at corners). Some 20 to 100 iterations.
+ * 5. Shape handles: X -> Q + S (X - Q) in every umbrella: S < 1 sharpens, a large S makes a flat spot. Limit points and tangent planes stay. They come last,
+ *    so that S is what it says on a fair surface; energy[1] is that before them.
+ * The result is read with alpha 0 and lambda 0. Vertex i of `mesh` is vertex i of M^1, whose order lcl_mesh_refine has. It carries refined creases and corners,
+ * and properties; texture coordinates are dropped with a note. Vertices outside the subset of A are not constrained.
+ * A: of `mesh` or one with its faces, Catmull-Clark with lambda above 0 and below 1 at every vertex (else LCL_ERROR_INVALID_ARGUMENT). `mesh` is not changed.
+ * solve: as for lcl_interpolate, but warm_start; its progress is also called by fairness, whose residuals go in model units. LCL_OK also where the solve did
+ * not converge, as solve_report tells, but did not run away either (to ten times its first residual); LCL_ERROR_SINGULAR, _INDEFINITE, _NOT_CONVERGED
+ * otherwise, and `refined` is only made with keep_going. LCL_ERROR_BAD_INPUT, with the vertex, for a normal that cannot be asked for. Reports may be NULL. On
+ * devices without double precision steps 2 to 5 run on the host. Linear time but for the solve; some 250 bytes a vertex of M^1 (of which quads make nine of
+ * one), 50 more with fairness. */
+LCL_API lcl_status lcl_two_phase_mesh(lcl_operator A, lcl_mesh mesh, const lcl_solve_options* solve, const lcl_two_phase_options* options, lcl_mesh* refined,
+                                      lcl_solve_report* solve_report, lcl_two_phase_report* report);
+/** For each vertex of the mesh that a two-phase mesh was made from, the vertex of M^1 at whose limit point it lies: its own number, isolated ones too.
+ * vertices: as many as that mesh had, which is what `count` receives; NULL: count alone. LCL_ERROR_INVALID_ARGUMENT for a mesh that lcl_two_phase_mesh did not
+ * make. */
+LCL_API lcl_status lcl_two_phase_get_map(lcl_mesh refined, int32_t* vertices, size_t* count);
 
 /* ---------------------------------------------------------------- operators of your own */
 

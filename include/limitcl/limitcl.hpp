@@ -13,6 +13,7 @@
 
 #include "device.hpp"
 #include "error.hpp"
+#include "evaluate.hpp"
 #include "expansion.hpp"
 #include "io.hpp"
 #include "limit_operator.hpp"
@@ -21,5 +22,6 @@
 #include "scheme.hpp"
 #include "solve.hpp"
 #include "texture.hpp"
+#include "two_phase.hpp"
 
 #endif

@@ -90,6 +90,9 @@ public:
     void set_points(ArrayView<double> points);
     /// Unit normals that a writer puts beside the points: vertex_count x 3; empty: none.
     void set_normals(ArrayView<double> normals);
+    /// Normals as the file holds them, of a mesh from read_mesh_with_normals: vertex_count x 3, NaN where a vertex has none.
+    /// Errors: LCL_ERROR_BAD_INPUT where the file has none, LCL_ERROR_INVALID_ARGUMENT where they were not read or the points have changed.
+    std::vector<double> file_normals() const;
 
     /// Adds sharp features to those that are there and sets the boundary rule. Operators made before keep what they were made with.
     void add_features(const Features& features);
@@ -194,6 +197,12 @@ inline void Mesh::require_size(std::size_t size, std::size_t per_vertex, const c
 inline void Mesh::set_points(ArrayView<double> points) {
     require_size(points.size(), 3, "points");
     check(lcl_mesh_set_points(get(), points.data(), 3));
+}
+
+inline std::vector<double> Mesh::file_normals() const {
+    std::vector<double> normals(3 * static_cast<std::size_t>(vertex_count()));
+    check(lcl_mesh_get_normals(get(), normals.data()));
+    return normals;
 }
 
 inline void Mesh::set_normals(ArrayView<double> normals) {
