@@ -281,15 +281,17 @@ inline real lcl_find_cell(real *s, real *t, int *k) {
     return -1;
 }
 
-/// At the extraordinary point: its limit, limit tangents of length `unit`, which are those of the deepest cells along the two sides, and no second derivatives.
+/// At the extraordinary point: its limit, limit tangents of length `unit` along the two sides, and no second derivatives. The tangents are those of the dominant modes alone, to which the weights after
+/// those of the last depth belong; kinds without modes have those of their deepest cells.
 inline void lcl_evaluate_tip(lcl_kind kind, uint column, const __global real *restrict weights, const __global real *restrict cells, const __global real4 *restrict coefficients, real4 turn,
                              real unit, lcl_jet *jet) {
 #if LCL_JETS > 1
+    const int depth = kind.depths - (kind.weight_stride == 0);
     real4 p[LCL_POINTS];
-    lcl_cell(kind, kind.depths - 1, 0, column, weights, cells, coefficients, p);
+    lcl_cell(kind, depth, 0, column, weights, cells, coefficients, p);
     lcl_evaluate(0, 0, p, jet);
     const real4 along_s = lcl_unit(jet->at[1]);
-    lcl_cell(kind, kind.depths - 1, 2, column, weights, cells, coefficients, p);
+    lcl_cell(kind, depth, 2, column, weights, cells, coefficients, p);
     lcl_evaluate(0, 0, p, jet);
     jet->at[2] = lcl_unit(jet->at[2]);
     jet->at[1] = along_s;
@@ -301,7 +303,7 @@ inline void lcl_evaluate_tip(lcl_kind kind, uint column, const __global real *re
     jet->at[0] = (real4)(0);
 }
 
-/// Samples in irregular patches of kind kinds[which]: begin .. begin + count - 1. unit: the length of a limit tangent at an extraordinary point. places: the column of each sample's patch among those of the kind. weights: depths x M where weight_stride is M, else M.
+/// Samples in irregular patches of kind kinds[which]: begin .. begin + count - 1. unit: the length of a limit tangent at an extraordinary point. places: the column of each sample's patch among those of the kind. weights: (depths + 1) x M where weight_stride is M, else M.
 /// cells: (depths x) 3 x M x LCL_POINTS. coefficients: c_j of all patches of all kinds. The rest as above.
 __kernel void lcl_evaluate_irregular(const int begin, const int count, const int capacity, const real unit, const __global lcl_kind *restrict kinds, const int which,
                                      const __global real2 *restrict parameters, const __global uint *restrict places, const __global uint *restrict packed, const __global real4 *restrict turns,

@@ -60,7 +60,7 @@ public:
         SchemeOptions options;
         options.scheme = scheme;
         const Topology topology = build_topology(shape.mesh);
-        table_ = build_patch_table(shape.mesh, topology, find_features(shape.mesh, topology, shape.features), options);
+        table_ = build_patch_table(topology, find_features(shape.mesh, topology, shape.features), options);
         control_ = control_points(table_, shape.mesh.positions, 3);
         surface_ = std::make_unique<DeviceSurface>(solver_test::device_context(), table_, real);
         surface_->set_points(shape.mesh.positions.data(), 3);

@@ -9,6 +9,7 @@ namespace lcl {
 namespace {
 
 constexpr int mode_depths = 61;   // parameters down to 2^-61; 4^61, the factor of second derivatives, still is a float
+constexpr double same_value = 1e-9;  // of the pair of modes that makes the tangents
 constexpr int power_depths = 41;  // each takes memory; beyond 2^-41 the surface is a cone to double precision
 
 void append(const Eigen::MatrixXd& matrix, std::vector<double>& out) {  // columns one after the other
@@ -28,6 +29,7 @@ KindTable table_of(const Modes& modes) {
     table.weight_stride = table.mode_count;
     for (int m = 0; m < mode_depths; ++m)
         for (int j = 0; j < modes.count(); ++j) table.weights.push_back(std::pow(modes.values[j], m) * (modes.powers[j] != 0 ? m : 1));
+    for (int j = 0; j < modes.count(); ++j) table.weights.push_back(j > 0 && modes.values[1] - modes.values[j] < same_value ? 1 : 0);
     for (const Eigen::MatrixXd& cell : modes.cells) append(cell, table.cells);
     return table;
 }

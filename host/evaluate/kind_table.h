@@ -16,7 +16,7 @@ struct KindTable {
     int depths = 0;       ///< m = 0 .. depths - 1
     int cell_stride = 0, weight_stride = 0;
     std::vector<double> projection;  ///< M x K
-    std::vector<double> weights;     ///< depths x M where weight_stride is M, else M
+    std::vector<double> weights;     ///< (depths + 1) x M where weight_stride is M, those of the dominant modes alone last; else M
     std::vector<double> cells;       ///< (depths x) 3 x M x R
 };
 
