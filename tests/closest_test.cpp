@@ -8,16 +8,11 @@ using namespace capi_test;
 
 namespace {
 
-struct ReleaseSurface {
-    void operator()(lcl_limit_surface surface) const { lcl_limit_surface_release(surface); }
-};
-using Surface = std::unique_ptr<std::remove_pointer_t<lcl_limit_surface>, ReleaseSurface>;
-
-Surface make_surface(const shapes::Shape& shape, lcl_scheme which, lcl_precision precision = LCL_PRECISION_DOUBLE) {
+LimitSurface make_surface(const shapes::Shape& shape, lcl_scheme which, lcl_precision precision = LCL_PRECISION_DOUBLE) {
     const lcl_scheme_options options = scheme(which);
     lcl_limit_surface surface = nullptr;
     succeed(lcl_limit_surface_create(default_context(), make_mesh(shape).get(), &options, precision, &surface));
-    return Surface(surface);
+    return LimitSurface(surface);
 }
 
 /// Places on the surface with what is known of them.
@@ -98,7 +93,7 @@ std::vector<Scene> scenes() {
 TEST_CASE("closest points are nearer than every point of a dense sampling, and lie where their parameters say", "[closest]") {
     const Scene scene = GENERATE(from_range(scenes()));
     INFO(scene.shape.name << ", scheme " << scene.scheme);
-    const Surface surface = make_surface(scene.shape, scene.scheme);
+    const LimitSurface surface = make_surface(scene.shape, scene.scheme);
     const std::vector<double> points = points_round(scene.shape, 100);
     Found found = closest(surface.get(), points);
     const Found dense = dense_sampling(surface.get(), scene.shape, scene.scheme, 16);
@@ -118,7 +113,7 @@ TEST_CASE("the way to the closest point is normal to the surface", "[closest]") 
     const Scene scene = GENERATE(from_range(scenes()));
     INFO(scene.shape.name << ", scheme " << scene.scheme);
     const bool is_closed = scene.shape.name.find("grid") == std::string::npos;
-    const Surface surface = make_surface(scene.shape, scene.scheme);
+    const LimitSurface surface = make_surface(scene.shape, scene.scheme);
     const std::vector<double> points = points_round(scene.shape, 100);
     Found found = closest(surface.get(), points);
     found.evaluate(surface.get());
@@ -139,7 +134,7 @@ TEST_CASE("the way to the closest point is normal to the surface", "[closest]") 
 TEST_CASE("points moved off the surface along its normals come back to their places", "[closest]") {
     const auto precision = GENERATE(LCL_PRECISION_DOUBLE, LCL_PRECISION_SINGLE);
     const shapes::Shape shape = shapes::rough(shapes::icosphere_quads(1), 0.02, 5);
-    const Surface surface = make_surface(shape, LCL_SCHEME_CATMULL_CLARK, precision);
+    const LimitSurface surface = make_surface(shape, LCL_SCHEME_CATMULL_CLARK, precision);
     shapes::Random random(11);
     Found places(500);
     for (std::size_t i = 0; i < places.count(); ++i) {
@@ -159,7 +154,7 @@ TEST_CASE("points moved off the surface along its normals come back to their pla
 }
 
 TEST_CASE("points beside an open surface come to its boundary curve", "[closest]") {
-    const Surface surface = make_surface(shapes::grid_quads(4, 4), LCL_SCHEME_CATMULL_CLARK);
+    const LimitSurface surface = make_surface(shapes::grid_quads(4, 4), LCL_SCHEME_CATMULL_CLARK);
     const Found everything = dense_sampling(surface.get(), shapes::grid_quads(4, 4), LCL_SCHEME_CATMULL_CLARK, 8);
     double left = everything.points[0], right = left;
     for (std::size_t i = 0; i < everything.points.size(); i += 3) left = std::min(left, everything.points[i]), right = std::max(right, everything.points[i]);
@@ -171,7 +166,7 @@ TEST_CASE("points beside an open surface come to its boundary curve", "[closest]
 
 TEST_CASE("closest points follow new control points", "[closest]") {
     const shapes::Shape shape = shapes::cube(), larger = shapes::transformed(shapes::cube(), 3, 10);
-    const Surface surface = make_surface(shape, LCL_SCHEME_CATMULL_CLARK);
+    const LimitSurface surface = make_surface(shape, LCL_SCHEME_CATMULL_CLARK);
     const Found before = closest(surface.get(), {5, 0.1, 0.2});
     succeed(lcl_limit_surface_set_points(surface.get(), larger.mesh.positions.data(), 0));
     const Found after = closest(surface.get(), {3 * 5.0 + 10, 3 * 0.1 + 10, 3 * 0.2 + 10});
@@ -179,7 +174,7 @@ TEST_CASE("closest points follow new control points", "[closest]") {
 }
 
 TEST_CASE("closest points refuse points that are not finite", "[closest]") {
-    const Surface surface = make_surface(shapes::cube(), LCL_SCHEME_CATMULL_CLARK);
+    const LimitSurface surface = make_surface(shapes::cube(), LCL_SCHEME_CATMULL_CLARK);
     const double points[6] = {0, 0, 0, std::numeric_limits<double>::quiet_NaN(), 0, 0};
     lcl_closest_points out = LCL_CLOSEST_POINTS_INIT;
     refuse(lcl_limit_surface_closest(surface.get(), 2, points, 0, &out), LCL_ERROR_BAD_INPUT, "point 1 is not finite");

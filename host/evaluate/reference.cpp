@@ -10,7 +10,7 @@
 namespace lcl {
 namespace {
 
-constexpr int tip_depth = 60;  // limit tangents are read from this ring: what is left of higher modes is below rounding
+constexpr int tip_depth = 200;  // limit tangents are read from this ring: what is left of other modes is below rounding
 constexpr int box_spline[15][16] = {LCL_BOX_SPLINE};
 constexpr int monomials[15][2] = {{0, 0}, {1, 0}, {0, 1}, {2, 0}, {1, 1}, {0, 2}, {3, 0}, {2, 1}, {1, 2}, {0, 3}, {4, 0}, {3, 1}, {2, 2}, {1, 3}, {0, 4}};
 constexpr int orders[6][2] = {{0, 0}, {1, 0}, {0, 1}, {2, 0}, {1, 1}, {0, 2}};  // of the derivatives by s and t in a jet
