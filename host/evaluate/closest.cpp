@@ -12,11 +12,11 @@
 namespace lcl {
 namespace {
 
-constexpr double wanted_seeds = 131072;
-constexpr int finest_grid = 16;           // of seeds in a chart, a side
-constexpr int most_steps = 60;            // near an extraordinary vertex Newton's method gains only a factor of about 3 a step
-constexpr double longest_step = 1;        // in a chart
-constexpr double step_tolerance = 1e-12;  // of the surface's size
+constexpr double wanted_seeds = 32768;
+constexpr int finest_grid = 16;                                      // of seeds in a chart, a side
+constexpr int most_steps = 60;                                       // near an extraordinary vertex Newton's method gains only a factor of about 3 a step
+constexpr double longest_step = 1;                                   // in a chart
+constexpr double double_tolerance = 1e-12, single_tolerance = 1e-7;  // a step's length, of the surface's size
 constexpr std::size_t evaluations_a_point = 4, smallest_piece = 1024;
 
 using Vector = Eigen::Map<const Eigen::Vector3d>;
@@ -79,15 +79,15 @@ Eigen::Vector2d newton_step(const Eigen::Matrix2d& hessian, const Eigen::Matrix2
 
 struct ClosestSearch::Seeds {
     std::vector<ChartPlace> places;
-    std::vector<double> points;
+    std::vector<float> points;  // from the surface's centre; half the memory, and which of two seeds is nearer by a rounding does not matter
 
     std::size_t kdtree_get_point_count() const { return places.size(); }
-    double kdtree_get_pt(std::size_t i, std::size_t axis) const { return points[3 * i + axis]; }
+    float kdtree_get_pt(std::size_t i, std::size_t axis) const { return points[3 * i + axis]; }
     template <class Box>
     bool kdtree_get_bbox(Box&) const {
         return false;
     }
-    using Tree = nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<double, Seeds>, Seeds, 3, Index>;
+    using Tree = nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<float, Seeds>, Seeds, 3, Index>;
     std::unique_ptr<Tree> tree;
 };
 
@@ -110,8 +110,9 @@ ClosestSearch::ClosestSearch(DeviceSurface& surface, const Topology& topology)
         batch.resize(count);
         for (std::size_t i = 0; i < count; ++i) batch.set(i, charts_.surface_place(seeds_->places[first + i]));
         SurfaceValues values;
-        values.points = &seeds_->points[3 * first];
+        values.points = batch.points.data();
         batch.evaluate(surface_, piece, count, values);
+        for (std::size_t i = 0; i < 3 * count; ++i) seeds_->points[3 * first + i] = static_cast<float>(batch.points[i] - surface_.centre()[i % 3]);
     }
     seeds_->tree = std::make_unique<Seeds::Tree>(3, *seeds_, nanoflann::KDTreeSingleIndexAdaptorParams(16));
     seeds_->tree->buildIndex();
@@ -152,8 +153,9 @@ private:
     void start() {
         for_each(searches_.size(), [&](std::size_t i) {
             Index nearest = 0;
-            double square = 0;
-            search_.seeds_->tree->knnSearch(points_ + i * stride_, 1, &nearest, &square);
+            float square = 0, at[3];
+            for (int c = 0; c < 3; ++c) at[c] = static_cast<float>(points_[i * stride_ + c] - search_.surface_.centre()[c]);
+            search_.seeds_->tree->knnSearch(at, 1, &nearest, &square);
             searches_[i].best = search_.seeds_->places[nearest];
             active_[i] = static_cast<Index>(i);
             batch_.set(i, search_.charts_.surface_place(searches_[i].best));
@@ -167,26 +169,33 @@ private:
         batch_.evaluate(search_.surface_, samples_, active_.size(), values);
     }
 
-    /// A trial that is nearer becomes the best place, from which the next step goes; else the step was too long.
     void take_trials() {
         goes_on_.assign(active_.size(), 0);
-        const double tolerance = step_tolerance * search_.surface_.size();
+        const bool is_double = search_.surface_.is_double();
+        const double tolerance = (is_double ? double_tolerance : single_tolerance) * search_.surface_.size(), rounding = std::ldexp(8, is_double ? -53 : -24);
         for_each(active_.size(), [&](std::size_t k) {
             Search& search = searches_[active_[k]];
-            const Eigen::Vector3d way = Vector(&batch_.points[3 * k]) - target(active_[k]);
-            if (search.square >= 0 && !(way.squaredNorm() < search.square)) {
-                search.halve();
-            } else {
-                if (search.square >= 0) search.best = search.trial(search_.charts_);
-                search.square = way.squaredNorm();
-                set_step(k, way, search);
-            }
-            goes_on_[k] = search.length > tolerance;
+            goes_on_[k] = take_trial(k, rounding, search) && search.length > tolerance;
         });
         std::size_t kept = 0;
         for (std::size_t k = 0; k < active_.size(); ++k)
             if (goes_on_[k]) active_[kept++] = active_[k];
         active_.resize(kept);
+    }
+
+    /// A trial that is nearer becomes the best place, from which the next step goes; else the step was too long. Near the end squares of distances differ by
+    /// their rounding alone while steps still shrink: there the search goes on as long as they do. False where it is at an end.
+    bool take_trial(std::size_t k, double rounding, Search& search) {
+        const Eigen::Vector3d way = Vector(&batch_.points[3 * k]) - target(active_[k]);
+        const double before = search.square, square = way.squaredNorm(), length = search.length;
+        if (before >= 0 && !(square <= before * (1 + rounding))) {
+            search.halve();
+            return true;
+        }
+        if (before >= 0) search.best = search.trial(search_.charts_);
+        search.square = square;
+        set_step(k, way, search);
+        return before < 0 || before - square > rounding * before || search.length < length / 2;
     }
 
     /// Newton's step on |S - p|^2 / 2 in the chart: gradient (S - p) . S_a, .., second derivatives S_a . S_b + (S - p) . S_ab, ..

@@ -43,6 +43,8 @@ public:
     DeviceSurface(std::shared_ptr<Context> context, PatchTable table, Real real);
 
     const PatchTable& table() const { return table_; }
+    bool is_double() const { return real_ == Real::full; }
+    const std::array<double, 3>& centre() const { return centre_; }
     double size() const { return scale_; }  ///< diagonal of the bounding box of the control points
     /// points: point_count rows of three, `stride` values apart. BadInput where they are not finite.
     void set_points(const double* points, std::size_t stride);
