@@ -11,7 +11,7 @@ namespace lcl {
 namespace {
 
 constexpr int tip_depth = 200;  // limit tangents are read from this ring: what is left of other modes is below rounding
-constexpr int box_spline[15][16] = {LCL_BOX_SPLINE};
+constexpr int box_spline[15 * 16] = {LCL_BOX_SPLINE};
 constexpr int monomials[15][2] = {{0, 0}, {1, 0}, {0, 1}, {2, 0}, {1, 1}, {0, 2}, {3, 0}, {2, 1}, {1, 2}, {0, 3}, {4, 0}, {3, 1}, {2, 2}, {1, 3}, {0, 4}};
 constexpr int orders[6][2] = {{0, 0}, {1, 0}, {0, 1}, {2, 0}, {1, 1}, {0, 2}};  // of the derivatives by s and t in a jet
 
@@ -38,7 +38,7 @@ double power(int n, int derivatives, double x) {
 
 double box_weight(const int (&order)[2], int r, double s, double t) {
     double sum = 0;
-    for (int q = 0; q < 15; ++q) sum += box_spline[q][r] * power(monomials[q][0], order[0], s) * power(monomials[q][1], order[1], t);
+    for (int q = 0; q < 15; ++q) sum += box_spline[16 * q + r] * power(monomials[q][0], order[0], s) * power(monomials[q][1], order[1], t);
     return sum / 12;
 }
 
