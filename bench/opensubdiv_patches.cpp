@@ -236,9 +236,18 @@ Places places_round_vertex(int n, bool is_loop) {
     return places;
 }
 
+/// Round the origin: OpenSubdiv takes the points to float as they are.
+SharpMesh moved_to_origin(SharpMesh mesh) {
+    const std::size_t first = 3 * static_cast<std::size_t>(mesh.face_vertices.front());
+    const std::array<double, 3> origin{mesh.points[first], mesh.points[first + 1], mesh.points[first + 2]};
+    for (std::size_t i = 0; i < mesh.points.size(); ++i) mesh.points[i] -= origin[i % 3];
+    return mesh;
+}
+
 }  // namespace
 
-PatchErrors compare_patches(const limitcl::Mesh& surface_of, const SharpMesh& mesh, bool is_loop) {
+PatchErrors compare_patches(const limitcl::Mesh& surface_of, const SharpMesh& given, bool is_loop) {
+    const SharpMesh mesh = moved_to_origin(given);
     const Places places = random_places(mesh, is_loop);
     const SharpMesh used = used_part(mesh);
     PatchErrors errors;
