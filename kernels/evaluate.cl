@@ -153,12 +153,12 @@ inline real4 lcl_unit(real4 a) {
     return a / lcl_length(a);
 }
 
-/// Unit normal; NaN where the first derivatives are parallel or one of them vanishes, as far as their rounding lets one tell.
+/// Unit normal; NaN where the first derivatives are parallel or one of them vanishes, as far as their rounding, and what limit tangents at sharp features leave open (1e-7), lets one tell.
 inline real4 lcl_normal(real4 u, real4 v) {
     const real4 unit_u = lcl_unit(u), unit_v = lcl_unit(v);
     const real4 normal = cross(unit_u, unit_v);
     const real length = lcl_length(normal);
-    return length > (sizeof(real) == 8 ? (real)1e-12 : (real)1e-5) ? normal / length : (real4)(NAN);
+    return length > (sizeof(real) == 8 ? (real)1e-6 : (real)1e-5) ? normal / length : (real4)(NAN);
 }
 
 /// Gaussian and mean curvature, the latter positive where the surface bends away from the normal.

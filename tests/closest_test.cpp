@@ -173,11 +173,36 @@ TEST_CASE("closest points follow new control points", "[closest]") {
     CHECK_THAT(after.distances[0], Catch::Matchers::WithinAbs(3 * before.distances[0], 1e-9));
 }
 
+TEST_CASE("closest points do not need the mesh any more, whatever becomes of it", "[closest]") {
+    const Mesh mesh = make_mesh(shapes::cube());
+    lcl_limit_surface made = nullptr;
+    succeed(lcl_limit_surface_create(default_context(), mesh.get(), nullptr, LCL_PRECISION_DOUBLE, &made));
+    const LimitSurface surface(made);
+    const std::vector<double> point = {2, 0.1, 0.2};
+    const Found before = closest(surface.get(), point);
+    lcl_features features = LCL_FEATURES_INIT;
+    features.crease_angle_degrees = 30;
+    succeed(lcl_mesh_add_features(mesh.get(), &features));
+    CHECK(closest(surface.get(), point).distances == before.distances);
+}
+
+TEST_CASE("closest points are found on surfaces of any size", "[closest]") {
+    const double scale = GENERATE(1e25, 1e-25);
+    const LimitSurface surface = make_surface(shapes::transformed(shapes::cube(), scale, 0), LCL_SCHEME_CATMULL_CLARK),
+                       unit = make_surface(shapes::cube(), LCL_SCHEME_CATMULL_CLARK);
+    std::vector<double> points = points_round(shapes::cube(), 20), large = points;
+    for (double& coordinate : large) coordinate *= scale;
+    const Found expected = closest(unit.get(), points), found = closest(surface.get(), large);
+    for (std::size_t i = 0; i < found.count(); ++i) CHECK_THAT(found.distances[i] / scale, Catch::Matchers::WithinAbs(expected.distances[i], 1e-12));
+}
+
 TEST_CASE("closest points refuse points that are not finite", "[closest]") {
     const LimitSurface surface = make_surface(shapes::cube(), LCL_SCHEME_CATMULL_CLARK);
     const double points[6] = {0, 0, 0, std::numeric_limits<double>::quiet_NaN(), 0, 0};
     lcl_closest_points out = LCL_CLOSEST_POINTS_INIT;
     refuse(lcl_limit_surface_closest(surface.get(), 2, points, 0, &out), LCL_ERROR_BAD_INPUT, "point 1 is not finite");
+    const double far[3] = {0, 1e30, 0};
+    refuse(lcl_limit_surface_closest(surface.get(), 1, far, 0, &out), LCL_ERROR_BAD_INPUT, "point 0 is more than 1e12 times as far away");
     refuse(lcl_limit_surface_closest(surface.get(), 2, nullptr, 0, &out), LCL_ERROR_INVALID_ARGUMENT, "points is NULL");
     succeed(lcl_limit_surface_closest(surface.get(), 0, nullptr, 0, &out));
 }

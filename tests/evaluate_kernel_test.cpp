@@ -56,13 +56,14 @@ struct Values {
 
 class EvaluationCheck {
 public:
-    EvaluationCheck(const shapes::Shape& shape, Scheme scheme, Real real) : unit_(std::ldexp(1, real == Real::single ? -24 : -53)) {
+    EvaluationCheck(const shapes::Shape& shape, Scheme scheme, Real real, double dense_operations = least_dense_operations)
+        : unit_(std::ldexp(1, real == Real::single ? -24 : -53)) {
         SchemeOptions options;
         options.scheme = scheme;
         const Topology topology = build_topology(shape.mesh);
         table_ = build_patch_table(topology, find_features(shape.mesh, topology, shape.features), options);
         control_ = control_points(table_, shape.mesh.positions, 3);
-        surface_ = std::make_unique<DeviceSurface>(solver_test::device_context(), table_, real);
+        surface_ = std::make_unique<DeviceSurface>(solver_test::device_context(), table_, real, dense_operations);
         surface_->set_points(shape.mesh.positions.data(), 3);
         places_ = std::make_unique<RandomPlaces>(shape.mesh, scheme, Sizes());
     }
@@ -134,3 +135,9 @@ TEST_CASE("device values of limit surfaces are those of plain evaluation in doub
     if (real == Real::full && !solver_test::device_context()->device().has_double) return;
     EvaluationCheck(c.shape, c.scheme, real).check();
 }
+
+#ifdef LIMITCL_CLBLAST
+TEST_CASE("so they are where CLBlast makes the projections", "[evaluate_kernel]") {
+    EvaluationCheck(shapes::polygons_mixed(60, 1), Scheme::catmull_clark, Real::single, 0).check();
+}
+#endif

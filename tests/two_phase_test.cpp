@@ -416,6 +416,8 @@ TEST_CASE("a normal on the other side of the surface is noticed, and lengths do 
     CHECK(turned.findings.wrong_side == std::vector<Index>{7});
     options.normals[5] = std::nan("");
     CHECK_THROWS_WITH(make(mesh, catmull_clark(0, 0.3), options), Catch::Matchers::Contains("vertex 1 is not finite"));
+    options.normals[3] = options.normals[4] = 0;
+    CHECK_THROWS_WITH(make(mesh, catmull_clark(0, 0.3), options), Catch::Matchers::Contains("vertex 1 is not finite"));
 }
 
 TEST_CASE("convex vertices are those where every edge is", "[two-phase]") {

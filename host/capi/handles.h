@@ -80,7 +80,7 @@ struct lcl_mesh_s : lcl::Counted {
     lcl::FeatureOptions feature_options;  // the file's tags and what callers added; boundary resolved by boundary_rule()
     lcl_boundary boundary = LCL_BOUNDARY_DEFAULT;
     std::shared_ptr<lcl::RefinedLocations> locations;  // of a refined mesh
-    lcl::Index two_phase_vertices = -1;           // of a two-phase mesh: how many vertices the mesh had that it was made from
+    lcl::Index two_phase_vertices = -1;                // of a two-phase mesh: how many vertices the mesh had that it was made from
     bool was_read_with_normals = false;
     std::map<lcl_note, std::vector<std::string>> notes;
 

@@ -33,6 +33,17 @@ SurfaceValues values_of(const lcl_surface_values* given) {
     return {values.type == LCL_TYPE_FLOAT, values.points, values.du, values.dv, values.normals, values.duu, values.duv, values.dvv, values.gauss, values.mean};
 }
 
+/// Farther away than this many times the surface's size no digit of its shape is left in a distance.
+constexpr double farthest = 1e12;
+
+void check_point(const DeviceSurface& surface, const double* point, std::size_t i) {
+    for (std::size_t c = 0; c < 3; ++c) {
+        if (!std::isfinite(point[c])) throw BadInput("point " + std::to_string(i) + " is not finite: correct or remove it");
+        if (!(std::fabs(point[c] - surface.centre()[c]) <= farthest * surface.size()))
+            throw BadInput("point " + std::to_string(i) + " is more than 1e12 times as far away as the surface is large: correct or remove it");
+    }
+}
+
 /// body(first, count) for one piece after the other.
 template <class Body>
 void for_each_sample_piece(std::size_t count, const Body& body) {
@@ -52,7 +63,7 @@ lcl_status lcl_limit_surface_create(lcl_context context, lcl_mesh mesh, const lc
         const bool is_double = asked == Precision::full || (asked == Precision::mixed && context->context->device().has_double);
         const Real real = is_double ? Real::full : Real::single;
         auto out = std::make_unique<lcl_limit_surface_s>(
-            context, mesh, DeviceSurface(context->context, table_of(*mesh, options_or(scheme, LCL_SCHEME_OPTIONS_INIT, "scheme")), real));
+            context, DeviceSurface(context->context, table_of(*mesh, options_or(scheme, LCL_SCHEME_OPTIONS_INIT, "scheme")), real));
         out->surface.set_points(mesh->file.mesh.positions.data(), 3);
         *surface = out.release();
         return LCL_OK;
@@ -66,8 +77,9 @@ lcl_status lcl_limit_surface_set_points(lcl_limit_surface surface, const double*
     return guarded([&] {
         required(surface, "surface");
         if (stride != 0) check_channels(3, stride, "stride");
-        surface->surface.set_points(required(points, "points"), stride == 0 ? 3 : stride);
+        required(points, "points");
         surface->search.reset();
+        surface->surface.set_points(points, stride == 0 ? 3 : stride);
         return LCL_OK;
     });
 }
@@ -121,10 +133,8 @@ lcl_status lcl_limit_surface_closest(lcl_limit_surface surface, size_t count, co
         required(points, "points");
         if (stride != 0) check_channels(3, stride, "stride");
         const std::size_t step = stride == 0 ? 3 : stride;
-        for (std::size_t i = 0; i < count; ++i)
-            for (std::size_t c = 0; c < 3; ++c)
-                if (!std::isfinite(points[i * step + c])) throw BadInput("point " + std::to_string(i) + " is not finite: correct or remove it");
-        if (!surface->search) surface->search = std::make_unique<ClosestSearch>(surface->surface, surface->mesh->topology());
+        for (std::size_t i = 0; i < count; ++i) check_point(surface->surface, points + i * step, i);
+        if (!surface->search) surface->search = std::make_unique<ClosestSearch>(surface->surface);
         surface->search->find(points, step, count, {to.faces, to.corners, to.uv, to.points, to.normals, to.distances});
         return LCL_OK;
     });

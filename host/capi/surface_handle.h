@@ -10,12 +10,10 @@
 
 struct lcl_limit_surface_s : lcl::Counted {
     lcl::Reference<lcl_context_s> context;
-    lcl::Reference<lcl_mesh_s> mesh;  // for its faces
     lcl::DeviceSurface surface;
     std::unique_ptr<lcl::ClosestSearch> search;  // made by the first search
 
-    lcl_limit_surface_s(lcl_context_s* device, lcl_mesh_s* of, lcl::DeviceSurface made)
-        : context(lcl::share(device)), mesh(lcl::share(of)), surface(std::move(made)) {}
+    lcl_limit_surface_s(lcl_context_s* owner, lcl::DeviceSurface made) : context(lcl::share(owner)), surface(std::move(made)) {}
 };
 
 struct lcl_samples_s : lcl::Counted {

@@ -41,8 +41,8 @@ lcl_solve_options solve_options(const Options& options, SolveProgress& state) {
     return solve;
 }
 
-/// The library builds kernels at their first use, somewhere in a call of `elapsed` seconds: `compiled` of them, taken off its parts in proportion. `further`: of
-/// what follows the solve.
+/// The library builds kernels at their first use, somewhere in a call of `elapsed` seconds: `compiled` of them, taken off its parts in proportion. `further`:
+/// of what follows the solve.
 void note_seconds(Seconds& seconds, const lcl_solve_report& report, double further, double elapsed, double compiled) {
     const double all = elapsed - report.seconds_download;
     const double rest = all > compiled ? 1.0 - compiled / all : 0.0;
@@ -81,7 +81,8 @@ lcl_status solve(Job& job, lcl_context context, const SolveCall& call) {
     job.terminal.progress().end();
     if (status != LCL_OK && !is_result(status)) throw two_phase_failure(job, status);
     note_solve(job, report, std::move(residuals));
-    note_seconds(job.report.seconds, report, job.report.two_phase ? job.report.two_phase->seconds : 0.0, elapsed, lcl_context_compile_seconds(context) - compiled);
+    note_seconds(job.report.seconds, report, job.report.two_phase ? job.report.two_phase->seconds : 0.0, elapsed,
+                 lcl_context_compile_seconds(context) - compiled);
     return status;
 }
 
@@ -134,10 +135,11 @@ lcl_status solve_two_phase(Job& job, lcl_context context, lcl_operator A, lcl_me
 
 void finish_refined(Job& job, lcl_mesh refined) {
     const lcl_solve_report& report = job.report.solve->report;
-    if (!report.converged && job.options.sweeps == 0 && report.message[0] != '\0') warn(job, std::string(report.message) + " (all vertices are met all the same)");
+    if (!report.converged && job.options.sweeps == 0 && report.message[0] != '\0')
+        warn(job, std::string(report.message) + " (all vertices are met all the same)");
     say_two_phase(job, refined);
+    if (!job.options.map_file.empty()) write_vertex_map(job, refined);  // first: where it fails, OUT is as it was
     write_output(job, refined);
-    if (!job.options.map_file.empty()) write_vertex_map(job, refined);
 }
 
 }  // namespace

@@ -77,8 +77,8 @@ void run_refine(Job& job) {
         move_to_limit(job, context.get(), A.get(), refined.get(), all_channels(refined.get()));
     }
     warn_of_notes(job, refined.get());
+    if (!job.options.map_file.empty()) write_map(job, refined.get());  // first: where it fails, OUT is as it was
     write_output(job, refined.get());
-    if (!job.options.map_file.empty()) write_map(job, refined.get());
 }
 
 }  // namespace lcl::cli

@@ -66,11 +66,13 @@ void check_interpolate(const Options& options) {
         fail(exit_usage, "--map names the vertices of the refined mesh of the two-phase scheme: add --refined and --lambda, or leave it out");
     if (flag == nullptr) return;
     const bool has_ratio = options.has("--lambda") && (!options.lambda_file.empty() || (options.lambda > 0.0 && options.lambda < 1.0));
-    if (!has_ratio) fail(exit_usage, std::string(flag) + " is of the two-phase scheme and needs --lambda L with a blend ratio above 0 and below 1, such as 0.33");
+    if (!has_ratio)
+        fail(exit_usage, std::string(flag) + " is of the two-phase scheme and needs --lambda L with a blend ratio above 0 and below 1, such as 0.33");
     lcl_format format = options.format;
     if (options.output != "-") lcl_format_of_path(options.output.c_str(), &format);
     if (format == LCL_FORMAT_STL)
-        fail(exit_usage, std::string("STL holds triangles only, and with ") + flag + " the output is a refined mesh of quads: write to .obj, .off, .ply or .om");
+        fail(exit_usage,
+             std::string("STL holds triangles only, and with ") + flag + " the output is a refined mesh of quads: write to .obj, .off, .ply or .om");
 }
 
 void check_refine(const Options& options) {

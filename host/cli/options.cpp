@@ -79,7 +79,7 @@ void set_lambda(Options& options, const std::string& text) {
 void set_handles(Options& options, const std::string& text) {
     const std::size_t comma = text.find(',');
     const std::string parts[2] = {text.substr(0, comma), comma == std::string::npos ? "" : text.substr(comma + 1)};
-    const bool is_file = !to_number(parts[0]) && !to_number(parts[1]);
+    const bool is_file = !text.empty() && !to_number(parts[0]) && !to_number(parts[1]);
     if (is_file) {
         options.handles_file = text;
         return;
@@ -276,18 +276,24 @@ void Parser::add_interpolate() {
     add_choice(*command, "--solver", options_.solver, solver_names, "Default auto: the fastest that is sure to converge");
     command->add_option("--subset", options_.subset_file, "Interpolate only these vertices, one a line")->type_name("FILE");
     command->add_option("--sweeps", options_.sweeps, "Exactly so many sweeps, no test")->check(count_from(1))->type_name("N");
-    command->add_flag("--refined", options_.refined, "Two-phase scheme: the refined control mesh M^1, which meets all vertices exactly (with --lambda, as the next four)");
+    command->add_flag("--refined", options_.refined,
+                      "Two-phase scheme: the refined control mesh M^1, which meets all vertices exactly (with --lambda, as the next four)");
     command->add_option("--normals", options_.normals, "Normals to have: a CSV with header vertex,nx,ny,nz, or those of IN")->type_name("FILE|mesh");
-    command->add_option_function<std::string>("--handles", [this](const std::string& text) { set_handles(options_, text); },
-                                              "Shape handles of convex and of other vertices, or a CSV with header vertex,s: above 1 flatter, below 1 sharper")
+    command
+        ->add_option_function<std::string>(
+            "--handles", [this](const std::string& text) { set_handles(options_, text); },
+            "Shape handles of convex and of other vertices, or a CSV with header vertex,s: above 1 flatter, below 1 sharper")
         ->type_name("S1,S2|FILE");
-    command->add_option("--fair", options_.fair, "Weight of fairness: bumps are taken out as far as the vertices allow")->check(positive_number())->type_name("W");
+    command->add_option("--fair", options_.fair, "Weight of fairness: bumps are taken out as far as the vertices allow")
+        ->check(positive_number())
+        ->type_name("W");
     command->add_option("--map", options_.map_file, "CSV of the refined vertex of each vertex: vertex,refined_vertex")->type_name("FILE");
 }
 
 void Parser::add_limit() {
     CLI::App* command = add_command("limit", "Every vertex moved to its limit point", true, true);
-    command->add_flag("--normals", options_.limit_normals, "Unit limit normals too (OBJ, PLY, OFF): at creases the mean of the sides, 0 0 0 at isolated vertices");
+    command->add_flag("--normals", options_.limit_normals,
+                      "Unit limit normals too (OBJ, PLY, OFF): at creases the mean of the sides, 0 0 0 at isolated vertices");
 }
 
 void Parser::add_refine() {

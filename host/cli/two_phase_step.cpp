@@ -11,7 +11,6 @@ namespace lcl::cli {
 
 namespace {
 
-
 std::vector<char> subset_marks(lcl_mesh mesh, const SchemeChoice& scheme) {
     std::vector<char> marks(static_cast<std::size_t>(lcl_mesh_vertex_count(mesh)), scheme.subset.empty());
     for (const std::int32_t vertex : scheme.subset) marks[static_cast<std::size_t>(vertex)] = 1;
@@ -26,11 +25,13 @@ std::vector<double> read_normals(const std::string& path, const std::vector<char
     for (std::size_t row = 0; row < table.rows(); ++row) {
         const auto vertex = static_cast<std::size_t>(vertex_of_row(table, row, seen));
         const double* const normal = &table.values[4 * row + 1];
-        if (!std::isfinite(normal[0]) || !std::isfinite(normal[1]) || !std::isfinite(normal[2])) fail_at(path, table.lines[row], "a normal needs finite numbers");
+        if (!std::isfinite(normal[0]) || !std::isfinite(normal[1]) || !std::isfinite(normal[2]))
+            fail_at(path, table.lines[row], "a normal needs finite numbers");
         if (normal[0] == 0.0 && normal[1] == 0.0 && normal[2] == 0.0)
             fail_at(path, table.lines[row], "the normal is zero, which is no direction: correct it, or leave the line out");
         if (!in_subset[vertex])
-            fail_at(path, table.lines[row], "vertex " + std::to_string(vertex) + " is not in the subset that is interpolated: leave the line out, or add the vertex");
+            fail_at(path, table.lines[row],
+                    "vertex " + std::to_string(vertex) + " is not in the subset that is interpolated: leave the line out, or add the vertex");
         std::copy(normal, normal + 3, &normals[3 * vertex]);
     }
     return normals;
@@ -48,7 +49,8 @@ std::vector<double> normals_of_input(Job& job, lcl_mesh mesh, const std::vector<
         double* const normal = &normals[3 * v];
         const bool is_given = std::isfinite(normal[0]) && std::isfinite(normal[1]) && std::isfinite(normal[2]);
         if (is_given && used[v] && in_subset[v] && normal[0] == 0.0 && normal[1] == 0.0 && normal[2] == 0.0) {
-            Failure failure = make_failure(exit_bad_input, of_input(job, "the normal of vertex " + std::to_string(v) + " is zero, which is no direction: correct it"));
+            Failure failure =
+                make_failure(exit_bad_input, of_input(job, "the normal of vertex " + std::to_string(v) + " is zero, which is no direction: correct it"));
             failure.vertices.push_back(static_cast<std::int32_t>(v));
             throw failure;
         }
@@ -86,9 +88,7 @@ std::string first_of(const std::int32_t* vertices, std::int32_t count) {
 
 }  // namespace
 
-bool makes_refined_mesh(const Options& options) {
-    return options.refined || !options.normals.empty() || options.has("--handles") || options.fair > 0.0;
-}
+bool makes_refined_mesh(const Options& options) { return options.refined || !options.normals.empty() || options.has("--handles") || options.fair > 0.0; }
 
 TwoPhaseChoice choose_two_phase(Job& job, lcl_mesh mesh, const SchemeChoice& scheme, const std::vector<std::string>& channels) {
     const Options& options = job.options;
@@ -131,19 +131,20 @@ void note_two_phase(Job& job, const lcl_two_phase_report& findings) {
             job.report.vertices.assign(findings.wrong_side, findings.wrong_side + std::min<std::int32_t>(findings.wrong_side_count, 10));
     }
     if (findings.scaled_normals > 0)
-        warn(job, counted(findings.scaled_normals, "normal was", "normals were") + " not of unit length and " + (findings.scaled_normals == 1 ? "was" : "were") +
-                      " normalised");
+        warn(job, counted(findings.scaled_normals, "normal was", "normals were") + " not of unit length and " +
+                      (findings.scaled_normals == 1 ? "was" : "were") + " normalised");
     if (findings.skipped_normals > 0)
         warn(job, counted(findings.skipped_normals, "normal was", "normals were") +
                       " left out: corners, creases, boundary vertices with one or more than four faces, and vertices with two faces take none");
     if (job.options.fair > 0.0 && !findings.fair_converged)
-        warn(job, "fairness was not finished after " + counted(findings.fair_iterations, "iteration", "iterations") + ": all vertices are met, but a smaller --fair comes further");
+        warn(job, "fairness was not finished after " + counted(findings.fair_iterations, "iteration", "iterations") +
+                      ": all vertices are met, but a smaller --fair comes further");
 }
 
 void say_two_phase(Job& job, lcl_mesh refined) {
     const lcl_two_phase_report& findings = *job.report.two_phase;
-    std::string text = counted(lcl_mesh_vertex_count(refined), "vertex", "vertices") + "; limit points repaired by up to " + short_number(findings.largest_repair) +
-                       ", now within " + short_number(findings.max_error);
+    std::string text = counted(lcl_mesh_vertex_count(refined), "vertex", "vertices") + "; limit points repaired by up to " +
+                       short_number(findings.largest_repair) + ", now within " + short_number(findings.max_error);
     if (findings.normal_count > 0) text += "; " + counted(findings.normal_count, "normal", "normals");
     job.terminal.say("refined", text);
     if (job.options.fair > 0.0)

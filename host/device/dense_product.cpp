@@ -13,8 +13,6 @@ namespace lcl {
 
 namespace {
 
-constexpr double least_operations = 4e9;  // about a second of the plain kernel on a laptop: what CLBlast's first call costs must be small beside it
-
 template <class Number>
 clblast::StatusCode multiply(std::size_t rows, std::size_t inner, std::size_t columns, cl_mem a, cl_mem b, cl_mem c, std::size_t c_offset,
                              cl_command_queue queue) {
@@ -24,7 +22,7 @@ clblast::StatusCode multiply(std::size_t rows, std::size_t inner, std::size_t co
 
 }  // namespace
 
-bool has_dense_product(std::size_t rows, std::size_t inner, std::size_t columns) {
+bool has_dense_product(std::size_t rows, std::size_t inner, std::size_t columns, double least_operations) {
     return 2.0 * static_cast<double>(rows) * static_cast<double>(inner) * static_cast<double>(columns) >= least_operations;
 }
 
@@ -39,7 +37,7 @@ void dense_product(Context& context, bool is_double, std::size_t rows, std::size
 
 #else
 
-bool has_dense_product(std::size_t, std::size_t, std::size_t) { return false; }
+bool has_dense_product(std::size_t, std::size_t, std::size_t, double) { return false; }
 void dense_product(Context&, bool, std::size_t, std::size_t, std::size_t, const Buffer&, const Buffer&, const Buffer&, std::size_t) {
     throw Unsupported("this build has no CLBlast");
 }

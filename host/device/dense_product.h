@@ -6,8 +6,11 @@
 
 namespace lcl {
 
-/// Whether a product of rows x inner with inner x columns is worth CLBlast: it has to be there, and its first call on a machine compiles for seconds.
-bool has_dense_product(std::size_t rows, std::size_t inner, std::size_t columns);
+/// Operations from which on a product is worth CLBlast, whose first call on a machine compiles for seconds.
+constexpr double least_dense_operations = 4e9;
+
+/// Whether there is CLBlast, and a product of rows x inner with inner x columns has so many operations.
+bool has_dense_product(std::size_t rows, std::size_t inner, std::size_t columns, double least_operations = least_dense_operations);
 
 /// c = a b, all row after row; c from value c_offset on.. Enqueued on the kernels' queue. DeviceError where CLBlast fails.
 void dense_product(Context& context, bool is_double, std::size_t rows, std::size_t inner, std::size_t columns, const Buffer& a, const Buffer& b,

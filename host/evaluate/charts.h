@@ -26,8 +26,8 @@ struct SurfacePlace {
 
 class Charts {
 public:
-    /// Keeps references to both.
-    Charts(const PatchTable& table, const Topology& topology) : table_(table), topology_(topology) {}
+    /// Keeps a reference.
+    explicit Charts(const PatchTable& table) : table_(table), topology_(table.refiner->steps().front().topology) {}
 
     bool are_triangles() const { return table_.scheme == Scheme::loop; }
     Index count() const { return are_triangles() ? topology_.face_count : topology_.half_edge_count(); }

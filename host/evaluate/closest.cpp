@@ -79,7 +79,7 @@ Eigen::Vector2d newton_step(const Eigen::Matrix2d& hessian, const Eigen::Matrix2
 
 struct ClosestSearch::Seeds {
     std::vector<ChartPlace> places;
-    std::vector<float> points;  // from the surface's centre; half the memory, and which of two seeds is nearer by a rounding does not matter
+    std::vector<float> points;  // normalised; half the memory, and which of two seeds is nearer by a rounding does not matter
 
     std::size_t kdtree_get_point_count() const { return places.size(); }
     float kdtree_get_pt(std::size_t i, std::size_t axis) const { return points[3 * i + axis]; }
@@ -93,8 +93,12 @@ struct ClosestSearch::Seeds {
 
 ClosestSearch::~ClosestSearch() = default;
 
-ClosestSearch::ClosestSearch(DeviceSurface& surface, const Topology& topology)
-    : surface_(surface), charts_(surface.table(), topology), seeds_(std::make_unique<Seeds>()) {
+/// A coordinate in units of the surface's size, from its centre: floats hold it, and squares of it, wherever and however large the surface is.
+float ClosestSearch::normalised(double coordinate, std::size_t axis) const {
+    return static_cast<float>((coordinate - surface_.centre()[axis]) / surface_.size());
+}
+
+ClosestSearch::ClosestSearch(DeviceSurface& surface) : surface_(surface), charts_(surface.table()), seeds_(std::make_unique<Seeds>()) {
     const int grid = std::clamp(static_cast<int>(std::ceil(std::sqrt(wanted_seeds / std::max(1, charts_.count())))), 1, finest_grid);
     for (Index chart = 0; chart < charts_.count(); ++chart)
         for (int j = 0; j < grid; ++j)
@@ -112,7 +116,7 @@ ClosestSearch::ClosestSearch(DeviceSurface& surface, const Topology& topology)
         SurfaceValues values;
         values.points = batch.points.data();
         batch.evaluate(surface_, piece, count, values);
-        for (std::size_t i = 0; i < 3 * count; ++i) seeds_->points[3 * first + i] = static_cast<float>(batch.points[i] - surface_.centre()[i % 3]);
+        for (std::size_t i = 0; i < 3 * count; ++i) seeds_->points[3 * first + i] = normalised(batch.points[i], i % 3);
     }
     seeds_->tree = std::make_unique<Seeds::Tree>(3, *seeds_, nanoflann::KDTreeSingleIndexAdaptorParams(16));
     seeds_->tree->buildIndex();
@@ -154,7 +158,7 @@ private:
         for_each(searches_.size(), [&](std::size_t i) {
             Index nearest = 0;
             float square = 0, at[3];
-            for (int c = 0; c < 3; ++c) at[c] = static_cast<float>(points_[i * stride_ + c] - search_.surface_.centre()[c]);
+            for (std::size_t c = 0; c < 3; ++c) at[c] = search_.normalised(points_[i * stride_ + c], c);
             search_.seeds_->tree->knnSearch(at, 1, &nearest, &square);
             searches_[i].best = search_.seeds_->places[nearest];
             active_[i] = static_cast<Index>(i);

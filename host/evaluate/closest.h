@@ -20,8 +20,8 @@ struct ClosestPoints {
 /// surface and across charts.
 class ClosestSearch {
 public:
-    /// Keeps references to both. Evaluates the seeds at the surface's control points of now.
-    ClosestSearch(DeviceSurface& surface, const Topology& topology);
+    /// Keeps a reference. Evaluates the seeds at the surface's control points of now.
+    explicit ClosestSearch(DeviceSurface& surface);
     ~ClosestSearch();
 
     /// points: count rows of three, `stride` values apart, finite.
@@ -30,6 +30,7 @@ public:
 private:
     struct Seeds;
     class Piece;
+    float normalised(double coordinate, std::size_t axis) const;
 
     DeviceSurface& surface_;
     Charts charts_;

@@ -7,7 +7,6 @@
 #include <string>
 #include <utility>
 
-#include "host/device/dense_product.h"
 #include "host/parallel.h"
 
 namespace lcl {
@@ -56,8 +55,8 @@ std::size_t values_a_sample(unsigned want) {
 
 }  // namespace
 
-DeviceSurface::DeviceSurface(std::shared_ptr<Context> context, PatchTable table, Real real)
-    : context_(std::move(context)), table_(std::move(table)), real_(real) {
+DeviceSurface::DeviceSurface(std::shared_ptr<Context> context, PatchTable table, Real real, double dense_operations)
+    : context_(std::move(context)), table_(std::move(table)), real_(real), dense_operations_(dense_operations) {
     if (real == Real::full && !context_->device().has_double)
         throw Unsupported("double precision was asked for, and " + context_->device().name + " has none: use single precision");
     number_patches();
@@ -186,7 +185,7 @@ void DeviceSurface::project() {
         const std::size_t M = static_cast<std::size_t>(kind.table.mode_count), K = static_cast<std::size_t>(kind.table.point_count),
                           count = static_cast<std::size_t>(kind.patch_count);
         const cl_int points = static_cast<cl_int>(K);
-        if (has_dense_product(M, K, 4 * count)) {
+        if (has_dense_product(M, K, 4 * count, dense_operations_)) {
             const Buffer gathered(context_, K * count * 4 * number_bytes, "control points of irregular patches");
             launch(*context_, kernel("lcl_gather"), lanes(count, K), kind.patch_count, points, kind.control_buffer, points_, gathered);
             dense_product(*context_, real_ == Real::full, M, K, 4 * count, kind.projection, gathered, coefficients_, 4 * kind.first_coefficient);

@@ -6,6 +6,7 @@
 #include <memory>
 #include <vector>
 
+#include "host/device/dense_product.h"
 #include "host/device/device.h"
 #include "host/evaluate/kind_table.h"
 #include "host/evaluate/patch_table.h"
@@ -39,8 +40,8 @@ class DeviceSurface {
 public:
     static constexpr std::size_t piece_samples = std::size_t{1} << 17;  // what a launch reads and writes stays in the caches, and order_i in 24 bits
 
-    /// real: single or full. Uploads all but the points.
-    DeviceSurface(std::shared_ptr<Context> context, PatchTable table, Real real);
+    /// real: single or full. Uploads all but the points. dense_operations: from so many on a projection is CLBlast's.
+    DeviceSurface(std::shared_ptr<Context> context, PatchTable table, Real real, double dense_operations = least_dense_operations);
 
     const PatchTable& table() const { return table_; }
     bool is_double() const { return real_ == Real::full; }
@@ -88,6 +89,7 @@ private:
     std::shared_ptr<Context> context_;
     PatchTable table_;
     Real real_;
+    double dense_operations_;
     std::vector<cl_uint> place_of_patch_;  // regular: where its control points begin; irregular: its column among those of its kind
     std::vector<Kind> kinds_;
     std::size_t coefficient_count_ = 0;

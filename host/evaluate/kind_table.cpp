@@ -8,9 +8,9 @@
 namespace lcl {
 namespace {
 
-constexpr int mode_depths = 61;   // parameters down to 2^-61; 4^61, the factor of second derivatives, still is a float
+constexpr int mode_depths = 61;      // parameters down to 2^-61; 4^61, the factor of second derivatives, still is a float
 constexpr double same_value = 1e-9;  // of the pair of modes that makes the tangents
-constexpr int power_depths = 41;  // each takes memory; beyond 2^-41 the surface is a cone to double precision
+constexpr int power_depths = 41;     // each takes memory; beyond 2^-41 the surface is a cone to double precision
 
 void append(const Eigen::MatrixXd& matrix, std::vector<double>& out) {  // columns one after the other
     out.insert(out.end(), matrix.data(), matrix.data() + matrix.size());

@@ -85,10 +85,10 @@ public:
 
 private:
     void take(Index v, const double* given, double* normal) {
-        const double largest = std::max({std::fabs(given[0]), std::fabs(given[1]), std::fabs(given[2])});
-        if (largest == 0) return;
         if (!std::isfinite(given[0]) || !std::isfinite(given[1]) || !std::isfinite(given[2]))
             throw BadInput("the normal of vertex " + std::to_string(v) + " is not finite: correct it", {{v}, {}});
+        const double largest = std::max({std::fabs(given[0]), std::fabs(given[1]), std::fabs(given[2])});
+        if (largest == 0) return;
         const std::string objection = constrained_[v] ? tangent_objection(topology_, features_, v) : "it is not in the subset that is interpolated";
         if (!objection.empty() && !options_.skip_normals)
             throw BadInput("vertex " + std::to_string(v) + " can have no prescribed normal, because " + objection + ": leave its normal out", {{v}, {}});

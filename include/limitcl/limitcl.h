@@ -899,7 +899,8 @@ typedef struct lcl_closest_points {
 
 /** For each of `count` points (rows of three, `stride` values apart, 0: 3) the closest point of the limit surface: the nearest of a mesh refined to the limit,
  * then Newton on the exact surface, across patch borders. A point of the boundary counts where nothing nearer is. Where the surface folds several times
- * within the size of a refined face, a neighbouring local minimum may be found. LCL_ERROR_BAD_INPUT for points that are not finite. */
+ * within the size of a refined face, a neighbouring local minimum may be found. LCL_ERROR_BAD_INPUT for points that are not finite or more than 1e12 times as
+ * far away as the surface is large. */
 LCL_API lcl_status lcl_limit_surface_closest(lcl_limit_surface surface, size_t count, const double* points, size_t stride, const lcl_closest_points* closest);
 
 #ifdef __cplusplus
