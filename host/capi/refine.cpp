@@ -150,7 +150,8 @@ int32_t lcl_refiner_vertex_count(lcl_refiner refiner) { return refiner ? refiner
 lcl_status lcl_refiner_get_mesh(lcl_refiner refiner, lcl_mesh* refined) {
     return guarded([&] {
         required(refined, "refined");
-        *refined = refined_handle(*required(refiner, "refiner")->mesh, refiner->refiner).release();
+        required(refiner, "refiner");
+        *refined = refined_handle(*refiner->mesh, refiner->refiner).release();
         return LCL_OK;
     });
 }
