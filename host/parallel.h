@@ -53,4 +53,15 @@ void parallel_for(std::size_t count, const Body& body, std::size_t smallest_piec
     for_each_piece(count, piece_count(count, smallest_piece), [&](std::size_t, std::size_t begin, std::size_t end) { body(begin, end); });
 }
 
+/// body(i) for every i in [0, count), under the same terms.
+template <class Count, class Body>
+void parallel_for_each(Count count, const Body& body, std::size_t smallest_piece = smallest_parallel_piece) {
+    parallel_for(
+        static_cast<std::size_t>(count),
+        [&](std::size_t begin, std::size_t end) {
+            for (Count i = static_cast<Count>(begin); i < static_cast<Count>(end); ++i) body(i);
+        },
+        smallest_piece);
+}
+
 }  // namespace lcl

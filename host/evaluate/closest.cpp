@@ -145,12 +145,7 @@ private:
 
     template <class Body>
     static void for_each(std::size_t count, const Body& body) {
-        parallel_for(
-            count,
-            [&](std::size_t begin, std::size_t end) {
-                for (std::size_t i = begin; i < end; ++i) body(i);
-            },
-            smallest_piece);
+        parallel_for_each(count, body, smallest_piece);
     }
 
     /// Every search begins at the seed that is nearest to its point.

@@ -155,11 +155,9 @@ void DeviceSurface::upload_points() {
     Mapping mapping = context_->map(points_, 0, count * 4 * (as_double ? sizeof(double) : sizeof(float)), true, context_->marker(), "uploading control points");
     const auto put = [&](auto* rows) {
         using Number = std::remove_reference_t<decltype(*rows)>;
-        parallel_for(count, [&](std::size_t begin, std::size_t end) {
-            for (std::size_t i = begin; i < end; ++i) {
-                for (std::size_t c = 0; c < 3; ++c) rows[4 * i + c] = static_cast<Number>(control_points_[3 * i + c]);
-                rows[4 * i + 3] = 0;
-            }
+        parallel_for_each(count, [&](std::size_t i) {
+            for (std::size_t c = 0; c < 3; ++c) rows[4 * i + c] = static_cast<Number>(control_points_[3 * i + c]);
+            rows[4 * i + 3] = 0;
         });
     };
     if (as_double) put(static_cast<double*>(mapping.data()));

@@ -119,9 +119,7 @@ void add_quarters(const Topology& once, const DooSabinWalk& walk, Index corners,
         else put(v, following, start, walk.near_point(start), walk.far_point(once.previous(following)));
     };
     quarters.assign(4 * static_cast<std::size_t>(once.vertex_count), -1);
-    parallel_for(once.vertex_count, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t v = begin; v < end; ++v) put_vertex(static_cast<Index>(v));
-    });
+    parallel_for_each(once.vertex_count, put_vertex);
 }
 
 /// The squares beyond the sharp edges at each corner of the mesh.

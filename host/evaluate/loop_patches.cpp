@@ -33,12 +33,7 @@ public:
 private:
     template <class Body>
     void for_each_patch(const Body& body) const {
-        parallel_for(
-            places_.size(),
-            [&](std::size_t begin, std::size_t end) {
-                for (std::size_t patch = begin; patch < end; ++patch) body(static_cast<Index>(patch));
-            },
-            smallest_parallel_piece / 8);
+        parallel_for_each(static_cast<Index>(places_.size()), body, smallest_parallel_piece / 8);
     }
 
     void number() {

@@ -52,13 +52,10 @@ private:
 
     /// A mesh other than the operator's would give normals of neither.
     void check_rings() const {
-        parallel_for(
-            plan_.runs.size(),
-            [&](std::size_t begin, std::size_t end) {
-                for (std::size_t r = begin; r < end; ++r)
-                    if (out_.run_turns[r] >= 0) check_run(plan_.runs[r]);
-            },
-            16);
+        const auto check = [&](std::size_t r) {
+            if (out_.run_turns[r] >= 0) check_run(plan_.runs[r]);
+        };
+        parallel_for_each(plan_.runs.size(), check, 16);
     }
 
     void check_run(const Run& run) const {

@@ -11,13 +11,6 @@
 namespace lcl {
 namespace {
 
-template <class Body>
-void for_each_index(Index count, const Body& body) {
-    parallel_for(static_cast<std::size_t>(count), [&](std::size_t begin, std::size_t end) {
-        for (Index i = static_cast<Index>(begin); i < static_cast<Index>(end); ++i) body(i);
-    });
-}
-
 /// `channels` neighbouring values of every row.
 template <class T>
 struct Table {
@@ -56,13 +49,13 @@ private:
     template <class Walk>
     void catmull_clark(const Walk& walk) const {
         const Table<double> face_points{out_[topology_.vertex_count + topology_.edge_count], out_.stride};
-        for_each_index(topology_.face_count, [&](Index f) {
+        parallel_for_each(topology_.face_count, [&](Index f) {
             Sum<channels> sum;
             for (Index h = topology_.face_offsets[f]; h < topology_.face_offsets[f + 1]; ++h) sum.add(in_[topology_.face_vertices[h]]);
             sum.store(face_points[f], 1.0 / topology_.degree(f));
         });
         // The mean of the ends and of the two face points.
-        for_each_index(topology_.edge_count, [&](Index e) {
+        parallel_for_each(topology_.edge_count, [&](Index e) {
             const Index h = topology_.edge_half_edge[e], t = topology_.twin[h];
             if (step_.features.edge_is_sharp[e]) return;
             Sum<channels> sum;
@@ -74,7 +67,7 @@ private:
         });
         // (n - 2 + alpha)/n V + (1 - alpha)/n^2 sum E_j + 1/n^2 sum f_j  (mesh expansion paper, appendix A)
         const double alpha = step_.options.alpha;
-        for_each_index(topology_.vertex_count, [&](Index v) {
+        parallel_for_each(topology_.vertex_count, [&](Index v) {
             if (!has_smooth_rule(step_.features.kind[v])) return;
             const double n = topology_.vertex_face_count[v];
             Sum<channels> ends, faces, sum;
@@ -93,7 +86,7 @@ private:
     void loop() const {
         const TriangleWalk walk;
         // 3/8 of the ends, 1/8 of the vertices across.
-        for_each_index(topology_.edge_count, [&](Index e) {
+        parallel_for_each(topology_.edge_count, [&](Index e) {
             const Index h = topology_.edge_half_edge[e], t = topology_.twin[h];
             if (step_.features.edge_is_sharp[e]) return;
             Sum<channels> ends, across;
@@ -105,7 +98,7 @@ private:
             ends.store(out_[topology_.vertex_count + e], 3.0 / 8);
         });
         // (1 - n beta) V + beta sum E_j  (Loop PIA paper)
-        for_each_index(topology_.vertex_count, [&](Index v) {
+        parallel_for_each(topology_.vertex_count, [&](Index v) {
             if (!has_smooth_rule(step_.features.kind[v])) return;
             const Index n = topology_.vertex_face_count[v];
             const double beta = betas_.of(n);
@@ -127,10 +120,10 @@ private:
             for (std::size_t k = stencils.offsets[i]; k < stencils.offsets[i + 1]; ++k) sum.add(value_of(stencils.indices[k]), stencils.weights[k]);
             return sum;
         };
-        for_each_index(rows.sum_count(), [&](Index i) { row_of(rows.sums, i, [&](Index v) { return in_[v]; }).store(sum_rows[i]); });
+        parallel_for_each(rows.sum_count(), [&](Index i) { row_of(rows.sums, i, [&](Index v) { return in_[v]; }).store(sum_rows[i]); });
         const Index old_count = topology_.vertex_count;
         const auto value_of = [&](Index v) -> const double* { return v < old_count ? in_[v] : sum_rows[v - old_count]; };
-        for_each_index(rows.row_count(), [&](Index i) { row_of(rows.rows, i, value_of).store(out_[rows.targets.empty() ? i : rows.targets[i]]); });
+        parallel_for_each(rows.row_count(), [&](Index i) { row_of(rows.rows, i, value_of).store(out_[rows.targets.empty() ? i : rows.targets[i]]); });
     }
 
     /// Loop's beta of the valences that are common.

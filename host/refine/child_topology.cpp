@@ -11,14 +11,6 @@
 namespace lcl {
 namespace {
 
-/// body(i) for i in [0, count), on all cores.
-template <class Body>
-void for_each_index(Index count, const Body& body) {
-    parallel_for(static_cast<std::size_t>(count), [&](std::size_t begin, std::size_t end) {
-        for (Index i = static_cast<Index>(begin); i < static_cast<Index>(end); ++i) body(i);
-    });
-}
-
 void resize(Topology& child, Index degree) {
     const std::size_t corners = static_cast<std::size_t>(child.face_count) * degree;
     child.face_offsets.resize(static_cast<std::size_t>(child.face_count) + 1);
@@ -42,8 +34,8 @@ void set_fan(Topology& child, Index v, Index offset, Index size) {
 /// Fans of old vertices, whose half-edges child_of(h) keep their order.
 template <class ChildOf>
 void set_vertex_fans(const Topology& parent, Topology& child, const ChildOf& child_of) {
-    for_each_index(parent.half_edge_count(), [&](Index i) { child.fan_half_edges[i] = child_of(parent.fan_half_edges[i]); });
-    for_each_index(parent.vertex_count, [&](Index v) { set_fan(child, v, parent.fan_offsets[v], parent.vertex_face_count[v]); });
+    parallel_for_each(parent.half_edge_count(), [&](Index i) { child.fan_half_edges[i] = child_of(parent.fan_half_edges[i]); });
+    parallel_for_each(parent.vertex_count, [&](Index v) { set_fan(child, v, parent.fan_offsets[v], parent.vertex_face_count[v]); });
 }
 
 /// Fans of edge points: `half` of the half-edges on each side of an edge; on_side(h), an array of them in face order, is that of h's side. A fan inside the
@@ -118,7 +110,7 @@ bool appears_first(Index h, Index twin) { return twin < 0 || twin > h; }
 template <class Walk>
 void catmull_clark_faces(const Walk& walk, const Topology& parent, Topology& child) {
     const Index edge_points = parent.vertex_count, face_points = edge_points + parent.edge_count;
-    for_each_index(parent.half_edge_count(), [&](Index h) {
+    parallel_for_each(parent.half_edge_count(), [&](Index h) {
         Index* const corners = &child.face_vertices[4 * static_cast<std::size_t>(h)];
         corners[0] = parent.face_vertices[h];
         corners[1] = edge_points + parent.half_edge_edge[h];
@@ -153,13 +145,13 @@ void connect_catmull_clark(const Walk& walk, const Topology& parent, Topology& c
     set_vertex_fans(parent, child, [](Index h) { return 4 * h; });
     set_edge_fans<2>(parent, child, [&](Index h) { return std::array<Index, 2>{4 * walk.next(h) + 3, 4 * h + 1}; });
     const Index face_points = parent.vertex_count + parent.edge_count, offset = child.half_edge_count() - parent.half_edge_count();
-    for_each_index(parent.half_edge_count(), [&](Index h) { child.fan_half_edges[offset + h] = 4 * h + 2; });
-    for_each_index(parent.face_count, [&](Index f) { set_fan(child, face_points + f, offset + parent.face_offsets[f], parent.degree(f)); });
+    parallel_for_each(parent.half_edge_count(), [&](Index h) { child.fan_half_edges[offset + h] = 4 * h + 2; });
+    parallel_for_each(parent.face_count, [&](Index f) { set_fan(child, face_points + f, offset + parent.face_offsets[f], parent.degree(f)); });
 }
 
 void loop_faces(const Topology& parent, Topology& child) {
     const Index edge_points = parent.vertex_count;
-    for_each_index(parent.face_count, [&](Index f) {
+    parallel_for_each(parent.face_count, [&](Index f) {
         const Index* const vertices = &parent.face_vertices[3 * f];
         const Index* const edges = &parent.half_edge_edge[3 * f];
         Index* const corners = &child.face_vertices[12 * static_cast<std::size_t>(f)];

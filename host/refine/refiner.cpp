@@ -85,9 +85,8 @@ std::vector<Index> Refiner::face_parents() const {
     for (const RefinerStep& step : steps_) {
         std::vector<Index> parents = child_parents(step.topology, options_.scheme, step.face_parent);
         if (!older.empty())
-            parallel_for(parents.size(), [&](std::size_t begin, std::size_t end) {
-                for (std::size_t f = begin; f < end; ++f)
-                    if (parents[f] >= 0) parents[f] = older[parents[f]];
+            parallel_for_each(parents.size(), [&](std::size_t f) {
+                if (parents[f] >= 0) parents[f] = older[parents[f]];
             });
         older = std::move(parents);
     }

@@ -114,12 +114,7 @@ private:
 
     template <class Body>
     void for_each_umbrella(const Body& body) const {
-        parallel_for(
-            umbrellas_.count,
-            [&](std::size_t begin, std::size_t end) {
-                for (std::size_t u = begin; u < end; ++u) body(u);
-            },
-            smallest_piece);
+        parallel_for_each(static_cast<std::size_t>(umbrellas_.count), body, smallest_piece);
     }
 
     /// body(place, weights) for the centre and every member.
@@ -214,17 +209,15 @@ private:
 
 std::vector<double> in_umbrella_order(const Umbrellas& umbrellas, const std::vector<double>& points) {
     std::vector<double> ordered(points.size());
-    parallel_for(umbrellas.order.size(), [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i) std::copy_n(&points[3 * static_cast<std::size_t>(umbrellas.order[i])], 3, &ordered[3 * i]);
-    });
+    parallel_for_each(umbrellas.order.size(),
+                      [&](std::size_t i) { std::copy_n(&points[3 * static_cast<std::size_t>(umbrellas.order[i])], 3, &ordered[3 * i]); });
     return ordered;
 }
 
 std::vector<double> in_vertex_order(const Umbrellas& umbrellas, const std::vector<double>& ordered) {
     std::vector<double> points(ordered.size());
-    parallel_for(umbrellas.order.size(), [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i) std::copy_n(&ordered[3 * i], 3, &points[3 * static_cast<std::size_t>(umbrellas.order[i])]);
-    });
+    parallel_for_each(umbrellas.order.size(),
+                      [&](std::size_t i) { std::copy_n(&ordered[3 * i], 3, &points[3 * static_cast<std::size_t>(umbrellas.order[i])]); });
     return points;
 }
 
