@@ -7,7 +7,10 @@
 #include <string>
 #include <utility>
 
+#include "host/apply/real_values.h"
+#include "host/evaluate/kind_table.h"
 #include "host/parallel.h"
+#include "kernels/evaluate.cl.h"
 
 namespace lcl {
 namespace {
@@ -16,16 +19,6 @@ constexpr int rings_expanded = 3;            // of four samples in an irregular 
 constexpr std::size_t samples_per_cell = 4;  // making a cell costs about as much as evaluating so many samples by the modes
 constexpr std::size_t largest_group = 64;
 constexpr double device_share = 0.25;  // of the device's memory, for expanded cells
-
-std::vector<unsigned char> bytes_of(const std::vector<double>& values, bool as_double) {
-    std::vector<unsigned char> bytes(values.size() * (as_double ? sizeof(double) : sizeof(float)));
-    if (as_double) {
-        std::copy(values.begin(), values.end(), reinterpret_cast<double*>(bytes.data()));
-    } else {
-        std::transform(values.begin(), values.end(), reinterpret_cast<float*>(bytes.data()), [](double value) { return static_cast<float>(value); });
-    }
-    return bytes;
-}
 
 /// A block of values: what of LCL_WANT it belongs to, its components, the caller's array, and how often a length is a factor of it.
 struct ValueBlock {
@@ -59,44 +52,46 @@ DeviceSurface::DeviceSurface(std::shared_ptr<Context> context, PatchTable table,
     : context_(std::move(context)), table_(std::move(table)), real_(real), dense_operations_(dense_operations) {
     if (real == Real::full && !context_->device().has_double)
         throw Unsupported("double precision was asked for, and " + context_->device().name + " has none: use single precision");
-    number_patches();
-    upload_kinds();
+    upload_kinds(number_patches());
     upload_turns();
 }
 
-void DeviceSurface::number_patches() {
+/// Control points of the patches of every kind, patch after patch.
+std::vector<std::vector<Index>> DeviceSurface::number_patches() {
     kinds_.resize(table_.kinds.size());
     place_of_patch_.resize(static_cast<std::size_t>(table_.patch_count()));
+    std::vector<std::vector<Index>> controls(kinds_.size());
     for (Index p = 0; p < table_.patch_count(); ++p) {
         const std::int32_t q = table_.kind[p];
         place_of_patch_[p] = static_cast<cl_uint>(q < 0 ? table_.patch_begin[p] : kinds_[q].patch_count++);
-        if (q >= 0)
-            kinds_[q].control.insert(kinds_[q].control.end(), table_.control.begin() + table_.patch_begin[p],
-                                     table_.control.begin() + table_.patch_begin[p + 1]);
+        if (q >= 0) controls[q].insert(controls[q].end(), table_.control.begin() + table_.patch_begin[p], table_.control.begin() + table_.patch_begin[p + 1]);
     }
+    return controls;
 }
 
 Buffer DeviceSurface::reals(const std::vector<double>& values, const char* what) const {
-    const std::vector<unsigned char> bytes = bytes_of(values, real_ == Real::full);
+    const std::vector<unsigned char> bytes = real_bytes(*context_, real_, values);
     return Buffer(context_, bytes.size(), what, bytes.data());
 }
 
-void DeviceSurface::upload_kinds() {
+void DeviceSurface::upload_kinds(const std::vector<std::vector<Index>>& controls) {
     std::vector<lcl_kind> numbers;
     for (std::size_t q = 0; q < kinds_.size(); ++q) {
         Kind& kind = kinds_[q];
-        kind.table = make_kind_table(table_.kinds[q]);
+        const KindTable table = make_kind_table(table_.kinds[q]);
+        kind.mode_count = static_cast<std::size_t>(table.mode_count);
+        kind.point_count = static_cast<std::size_t>(table.point_count);
         kind.which = static_cast<cl_int>(q);
         kind.first_coefficient = coefficient_count_;
-        numbers.push_back({kind.table.mode_count, kind.table.depths, kind.table.cell_stride, kind.table.weight_stride, static_cast<cl_uint>(coefficient_count_),
+        numbers.push_back({table.mode_count, table.depths, table.cell_stride, table.weight_stride, static_cast<cl_uint>(coefficient_count_),
                            static_cast<cl_uint>(kind.patch_count)});
-        coefficient_count_ += static_cast<std::size_t>(kind.table.mode_count) * static_cast<std::size_t>(kind.patch_count);
+        coefficient_count_ += kind.mode_count * static_cast<std::size_t>(kind.patch_count);
         if (coefficient_count_ > std::numeric_limits<cl_uint>::max())
             throw OutOfMemory("the surface has more coefficients than can be numbered: use a smaller mesh");
-        kind.control_buffer = Buffer(context_, kind.control.size() * sizeof(Index), "control points of irregular patches", kind.control.data());
-        kind.projection = reals(kind.table.projection, "projections");
-        kind.weights = reals(kind.table.weights, "weights of modes");
-        kind.cells = reals(kind.table.cells, "cells of modes");
+        kind.control = Buffer(context_, controls[q].size() * sizeof(Index), "control points of irregular patches", controls[q].data());
+        kind.projection = reals(table.projection, "projections");
+        kind.weights = reals(table.weights, "weights of modes");
+        kind.cells = reals(table.cells, "cells of modes");
     }
     kind_numbers_ = Buffer(context_, numbers.size() * sizeof(lcl_kind), "kinds of patches", numbers.data());
     const std::size_t row_bytes = 4 * (real_ == Real::full ? sizeof(double) : sizeof(float));
@@ -146,7 +141,7 @@ void DeviceSurface::set_points(const double* points, std::size_t stride) {
     });
     upload_points();
     project();
-    if (expanded_depths_ > 0) expand();
+    if (has_expanded_) expand();
 }
 
 void DeviceSurface::upload_points() {
@@ -180,17 +175,16 @@ LaunchSize DeviceSurface::lanes(std::size_t count, std::size_t second) const {
 void DeviceSurface::project() {
     const std::size_t number_bytes = real_ == Real::full ? sizeof(double) : sizeof(float);
     for (Kind& kind : kinds_) {
-        const std::size_t M = static_cast<std::size_t>(kind.table.mode_count), K = static_cast<std::size_t>(kind.table.point_count),
-                          count = static_cast<std::size_t>(kind.patch_count);
+        const std::size_t M = kind.mode_count, K = kind.point_count, count = static_cast<std::size_t>(kind.patch_count);
         const cl_int points = static_cast<cl_int>(K);
-        if (has_dense_product(M, K, 4 * count, dense_operations_)) {
+        if (has_dense_product(M, K, 4 * count, dense_operations_) && K * count * 4 * number_bytes <= context_->device().max_allocation_bytes) {
             const Buffer gathered(context_, K * count * 4 * number_bytes, "control points of irregular patches");
-            launch(*context_, kernel("lcl_gather"), lanes(count, K), kind.patch_count, points, kind.control_buffer, points_, gathered);
+            launch(*context_, kernel("lcl_gather"), lanes(count, K), kind.patch_count, points, kind.control, points_, gathered);
             dense_product(*context_, real_ == Real::full, M, K, 4 * count, kind.projection, gathered, coefficients_, 4 * kind.first_coefficient);
             context_->finish();  // `gathered` is in use
         } else {
             launch(*context_, kernel("lcl_project"), lanes(count, (M + 3) / 4), kind.patch_count, points, kind_numbers_, kind.which, kind.projection,
-                   kind.control_buffer, points_, coefficients_);
+                   kind.control, points_, coefficients_);
         }
     }
 }
@@ -203,7 +197,7 @@ std::size_t DeviceSurface::expanded_cells() const {
 
 void DeviceSurface::prepare_for(std::size_t sample_count) {
     const std::size_t cells = expanded_cells(), points = static_cast<std::size_t>(regular_point_count(table_.scheme));
-    if (expanded_depths_ > 0 || cells == 0 || sample_count < samples_per_cell * cells) return;
+    if (has_expanded_ || cells == 0 || sample_count < samples_per_cell * cells) return;
     const std::size_t row_bytes = 4 * (real_ == Real::full ? sizeof(double) : sizeof(float));
     const std::size_t bytes = (static_cast<std::size_t>(table_.control_count()) + cells * points) * row_bytes;
     if (static_cast<double>(bytes) > device_share * static_cast<double>(context_->device().memory_bytes) || bytes > context_->device().max_allocation_bytes ||
@@ -214,18 +208,25 @@ void DeviceSurface::prepare_for(std::size_t sample_count) {
         kind.expanded_point = next;
         next += static_cast<std::size_t>(3 * rings_expanded) * static_cast<std::size_t>(kind.patch_count) * points;
     }
+    Buffer larger;
+    try {
+        larger = Buffer(context_, bytes, "control points of patches");
+    } catch (const OutOfMemory&) {  // it goes without
+        return;
+    }
     context_->finish();  // the buffer that is replaced is no longer in use
-    points_ = Buffer(context_, bytes, "control points of patches");
-    expanded_depths_ = rings_expanded;
-    if (control_points_.empty()) return;
-    upload_points();
-    expand();
+    points_ = std::move(larger);
+    if (!control_points_.empty()) {
+        upload_points();
+        expand();
+    }
+    has_expanded_ = true;
 }
 
 void DeviceSurface::expand() {
     for (Kind& kind : kinds_)
-        launch(*context_, kernel("lcl_expand_cells"), lanes(static_cast<std::size_t>(3 * expanded_depths_) * static_cast<std::size_t>(kind.patch_count)),
-               kind.patch_count, static_cast<cl_int>(expanded_depths_), static_cast<cl_uint>(kind.expanded_point), kind_numbers_, kind.which, kind.weights,
+        launch(*context_, kernel("lcl_expand_cells"), lanes(static_cast<std::size_t>(3 * rings_expanded) * static_cast<std::size_t>(kind.patch_count)),
+               kind.patch_count, static_cast<cl_int>(rings_expanded), static_cast<cl_uint>(kind.expanded_point), kind_numbers_, kind.which, kind.weights,
                kind.cells, coefficients_, points_);
 }
 
@@ -247,12 +248,12 @@ struct DeviceSurface::Sorter {
     Entry entry(const PatchPlace& found) const {
         const std::int32_t q = surface.table_.kind[found.patch];
         Entry entry{static_cast<std::size_t>(q - cells_group), surface.place_of_patch_[found.patch], static_cast<cl_uint>(found.turn), found.s, found.t};
-        if (q < 0 || surface.expanded_depths_ == 0) return entry;
+        if (q < 0 || !surface.has_expanded_) return entry;
         const double size = is_triangle ? found.s + found.t : std::max(found.s, found.t);
         int m = 0;
         double scale = 2;
-        for (; m < surface.expanded_depths_ && scale * size < 1; ++m) scale *= 2;
-        if (m == surface.expanded_depths_) return entry;
+        for (; m < rings_expanded && scale * size < 1; ++m) scale *= 2;
+        if (m == rings_expanded) return entry;
         double s = scale * found.s, t = scale * found.t;
         std::size_t k = 0;
         cl_uint turn = static_cast<cl_uint>(m) + 1;
@@ -266,10 +267,9 @@ struct DeviceSurface::Sorter {
         } else {
             k = 1;
             s = 1 - s, t = 1 - t;
-            turn += static_cast<cl_uint>(surface.expanded_depths_);
+            turn += static_cast<cl_uint>(rings_expanded);
         }
-        const std::size_t cell =
-            3 * (static_cast<std::size_t>(entry.place) * static_cast<std::size_t>(surface.expanded_depths_) + static_cast<std::size_t>(m)) + k;
+        const std::size_t cell = 3 * (static_cast<std::size_t>(entry.place) * static_cast<std::size_t>(rings_expanded) + static_cast<std::size_t>(m)) + k;
         return {0, static_cast<cl_uint>(surface.kinds_[q].expanded_point + cell * points), entry.turn + turn * turn_count, s, t};
     }
 };

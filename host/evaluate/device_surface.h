@@ -8,10 +8,8 @@
 
 #include "host/device/dense_product.h"
 #include "host/device/device.h"
-#include "host/evaluate/kind_table.h"
 #include "host/evaluate/patch_table.h"
 #include "host/field/field.h"
-#include "kernels/evaluate.cl.h"
 
 namespace lcl {
 
@@ -60,18 +58,17 @@ public:
 
 private:
     struct Kind {
-        KindTable table;
+        std::size_t mode_count = 0, point_count = 0;  // M, K
         cl_int which = 0, patch_count = 0;
         std::size_t first_coefficient = 0;
-        std::vector<Index> control;  // patch_count x K
-        Buffer control_buffer, projection, weights, cells;
+        Buffer control, projection, weights, cells;
         std::size_t expanded_point = 0;
     };
     template <class Number>
     struct Sorter;
 
-    void number_patches();
-    void upload_kinds();
+    std::vector<std::vector<Index>> number_patches();
+    void upload_kinds(const std::vector<std::vector<Index>>& controls);
     void upload_turns();
     void upload_points();
     void project();
@@ -93,7 +90,7 @@ private:
     std::vector<cl_uint> place_of_patch_;  // regular: where its control points begin; irregular: its column among those of its kind
     std::vector<Kind> kinds_;
     std::size_t coefficient_count_ = 0;
-    int expanded_depths_ = 0;  // 0: none
+    bool has_expanded_ = false;  // the outer rings of irregular patches stand behind the control points, as regular patches
     Buffer kind_numbers_, control_, points_, coefficients_, turns_, out_;
     std::vector<double> control_points_;  // normalised, control_count x 3
     std::array<double, 3> centre_{};
