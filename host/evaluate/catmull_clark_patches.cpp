@@ -250,8 +250,7 @@ private:
         for (Index p = 0; p < patches; ++p) {
             table_.patch_begin[p] = static_cast<Index>(next);
             next += table_.kind[p] < 0 ? 16 : table_.kinds[table_.kind[p]].point_count;
-            if (next > std::numeric_limits<Index>::max())
-                throw OutOfMemory("the patches of the limit surface have more than 2147483647 control points together: take a smaller mesh");
+            check_control_count(next);
         }
         table_.patch_begin[patches] = static_cast<Index>(next);
         table_.control.resize(next);
@@ -297,42 +296,34 @@ Quarter quarter_of(double u, double v) {
     return {odd | upper << 1, along[odd], along[odd ^ 1]};
 }
 
-/// "6 corners (0 to 5)", "1 face (0)".
-std::string counted(Index count, const char* one, const char* many) {
-    return std::to_string(count) + " " + (count == 1 ? std::string(one) + " (0)" : many + (" (0 to " + std::to_string(count - 1)) + ")");
-}
-
 std::string shortest(double x) {
     std::array<char, 32> text;
     return {text.data(), std::to_chars(text.data(), text.data() + text.size(), x).ptr};
 }
 
 [[noreturn]] void refuse(const PatchTable& table, const Places& places, std::size_t i) {
-    const Index faces = static_cast<Index>(table.face_begin.size()) - 1, face = places.faces[i], corner = places.corners ? places.corners[i] : 0;
-    const std::string place = "place " + std::to_string(i) + ": ", name = "face " + std::to_string(face);
-    if (face < 0 || face >= faces) throw BadInput(place + name + " does not exist, the mesh has " + counted(faces, "face", "faces"));
-    const Where where{{}, {face}};
-    const Index degree = table.face_begin[face + 1] - table.face_begin[face];
-    const std::string of_face = "corner " + std::to_string(corner) + " of " + name + " does not exist";
-    if (degree == 4 && corner != 0) throw BadInput(place + of_face + ": on a quad the corner is 0 and (u, v) runs over the whole face", where);
-    if (corner < 0 || corner >= degree) throw BadInput(place + of_face + ", it has " + counted(degree, "corner", "corners"), where);
-    throw BadInput(
-        place + "(u, v) = (" + shortest(places.uv[2 * i]) + ", " + shortest(places.uv[2 * i + 1]) + ") does not lie on " + name + ": both run from 0 to 1",
-        where);
+    check_face(table, places, i);
+    const Where where{{}, {places.faces[i]}};
+    if (table.degree(places.faces[i]) == 4 && places.corner(i) != 0)
+        throw BadInput(place_name(i) + corner_name(places, i) + " does not exist: on a quad the corner is 0 and (u, v) runs over the whole face", where);
+    check_corner(table, places, i);
+    throw BadInput(place_name(i) + "(u, v) = (" + shortest(places.uv[2 * i]) + ", " + shortest(places.uv[2 * i + 1]) + ") does not lie on face " +
+                       std::to_string(places.faces[i]) + ": both run from 0 to 1",
+                   where);
 }
 
 bool in_unit_square(double u, double v) { return static_cast<int>(u >= 0) & static_cast<int>(u <= 1) & static_cast<int>(v >= 0) & static_cast<int>(v <= 1); }
 
 bool exists(const PatchTable& table, const Places& places, std::size_t i) {
-    const auto faces = static_cast<std::uint32_t>(table.face_begin.size() - 1), face = static_cast<std::uint32_t>(places.faces[i]);
-    if (face >= faces) return false;
-    const Index degree = table.face_begin[face + 1] - table.face_begin[face], corner = places.corners ? places.corners[i] : 0;
+    const Index face = places.faces[i];
+    if (face < 0 || face >= table.face_count()) return false;
+    const Index degree = table.degree(face), corner = places.corner(i);
     return corner >= 0 && corner < (degree == 4 ? 1 : degree) && in_unit_square(places.uv[2 * i], places.uv[2 * i + 1]);
 }
 
 /// All faces are quads: each has four patches. False where a place does not exist.
 bool locate_on_quads(const PatchTable& table, const Places& places, std::size_t begin, std::size_t end, PatchPlace* out) {
-    const auto faces = static_cast<std::uint32_t>(table.face_begin.size() - 1);
+    const auto faces = static_cast<std::uint32_t>(table.face_count());
     bool good = true;
     for (std::size_t i = begin; i < end; ++i, ++out) {
         const double u = places.uv[2 * i], v = places.uv[2 * i + 1];
@@ -354,9 +345,8 @@ bool locate_on_polygons(const PatchTable& table, const Places& places, std::size
     for (std::size_t i = begin; i < end; ++i, ++out) {
         if (!exists(table, places, i)) return false;
         const double u = places.uv[2 * i], v = places.uv[2 * i + 1];
-        const Index face = places.faces[i], corner = places.corners ? places.corners[i] : 0;
-        const Index first = table.face_begin[face], degree = table.face_begin[face + 1] - first;
-        const bool is_quad = degree == 4;
+        const Index face = places.faces[i], corner = places.corner(i), first = table.face_begin[face];
+        const bool is_quad = table.degree(face) == 4;
         // Of the quads that the first refinement makes, then of the patches of that one.
         const Quarter quad = is_quad ? quarter_of(u, v) : Quarter{corner, u, v};
         const Quarter quarter = quarter_of(quad.s, quad.t);

@@ -26,10 +26,8 @@ SurfacePlace Charts::surface_place(const ChartPlace& place) const {
     return {face, corner, place.a, place.b};
 }
 
-/// Doo-Sabin: there is a square beyond the edge to the next vertex (0), the edge to the previous one (1), both (2).
-bool Charts::reaches_beyond(Index corner, int which) const { return table_.square_beyond(corner, which) >= 0; }
-double Charts::low_a(Index corner) const { return reaches_beyond(corner, 1) ? -1 : 0; }
-double Charts::low_b(Index corner) const { return reaches_beyond(corner, 0) ? -1 : 0; }
+double Charts::low_a(Index corner) const { return table_.square_beyond(corner, 1) >= 0 ? -1 : 0; }
+double Charts::low_b(Index corner) const { return table_.square_beyond(corner, 0) >= 0 ? -1 : 0; }
 
 /// Across one border; false where the place is inside, or at a wall.
 bool Charts::step_square(ChartPlace& place) const {
@@ -51,7 +49,7 @@ bool Charts::step_square(ChartPlace& place) const {
     } else if (b > 1) {
         place = {topology_.previous(h), 2 - b, a};
     } else {
-        if (a >= 0 || b >= 0 || reaches_beyond(h, 2)) return false;
+        if (a >= 0 || b >= 0 || table_.square_beyond(h, 2) >= 0) return false;
         (a > b ? place.a : place.b) = 0;  // round a corner of the domain
     }
     return true;

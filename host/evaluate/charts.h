@@ -39,7 +39,6 @@ public:
     std::array<bool, 3> walls(const ChartPlace& place) const;
 
 private:
-    bool reaches_beyond(Index corner, int which) const;
     double low_a(Index corner) const;
     double low_b(Index corner) const;
     bool step_square(ChartPlace& place) const;

@@ -144,27 +144,19 @@ Index square_at(const PatchTable& table, Index corner, Square square) {
 Square square_of(double u, double v) { return u < 0 ? v < 0 ? Square::kept : Square::beyond_previous : v < 0 ? Square::beyond_next : Square::corner; }
 
 bool corner_exists(const PatchTable& table, const Places& places, std::size_t i) {
-    const Index face = places.faces[i], corner = places.corners ? places.corners[i] : 0;
-    return face >= 0 && face < static_cast<Index>(table.face_begin.size()) - 1 && corner >= 0 && corner < table.face_begin[face + 1] - table.face_begin[face];
+    const Index face = places.faces[i], corner = places.corner(i);
+    return face >= 0 && face < table.face_count() && corner >= 0 && corner < table.degree(face);
 }
 
 [[noreturn]] void refuse(const PatchTable& table, const Places& places, std::size_t i) {
-    const Index face = places.faces[i], faces = static_cast<Index>(table.face_begin.size()) - 1, corner = places.corners ? places.corners[i] : 0;
-    const std::string place = "place " + std::to_string(i) + ": ";
-    if (face < 0 || face >= faces)
-        throw BadInput(place + "face " + std::to_string(face) + " does not exist, the mesh has " + std::to_string(faces) + " faces (0 to " +
-                       std::to_string(faces - 1) + ")");
-    const std::string of_face = "corner " + std::to_string(corner) + " of face " + std::to_string(face);
-    const Index degree = table.face_begin[face + 1] - table.face_begin[face];
-    if (corner < 0 || corner >= degree)
-        throw BadInput(place + of_face + " does not exist, it has " + std::to_string(degree) + " corners (0 to " + std::to_string(degree - 1) + ")",
-                       Where{{}, {face}});
-    const Index at = table.face_begin[face] + corner;
+    check_face(table, places, i);
+    check_corner(table, places, i);
+    const Index at = table.face_begin[places.faces[i]] + places.corner(i);
     const auto range = [&](Square square) { return square_at(table, at, square) < 0 ? "from 0 to 1" : "from -1 to 1"; };
-    throw BadInput(place + "(u, v) = (" + std::to_string(places.uv[2 * i]) + ", " + std::to_string(places.uv[2 * i + 1]) + ") is not at " + of_face +
-                       ": u runs " + range(Square::beyond_previous) + ", v " + range(Square::beyond_next) + ", both together " +
+    throw BadInput(place_name(i) + "(u, v) = (" + std::to_string(places.uv[2 * i]) + ", " + std::to_string(places.uv[2 * i + 1]) + ") is not at " +
+                       corner_name(places, i) + ": u runs " + range(Square::beyond_previous) + ", v " + range(Square::beyond_next) + ", both together " +
                        (square_at(table, at, Square::kept) < 0 ? "do not go below 0" : "from -1 to 0 too"),
-                   Where{{}, {face}});
+                   Where{{}, {places.faces[i]}});
 }
 
 }  // namespace
@@ -188,7 +180,7 @@ void locate_doo_sabin(const PatchTable& table, const Places& places, std::size_t
         const double u = places.uv[2 * i], v = places.uv[2 * i + 1];
         if (!corner_exists(table, places, i) || !(u >= -1 && u <= 1 && v >= -1 && v <= 1)) refuse(table, places, i);
         const Square square = square_of(u, v);
-        const Index vertex = square_at(table, table.face_begin[places.faces[i]] + (places.corners ? places.corners[i] : 0), square);
+        const Index vertex = square_at(table, table.face_begin[places.faces[i]] + places.corner(i), square);
         if (vertex < 0) refuse(table, places, i);
         // In its quarter: from the side towards (0, 0) and, what is exact next to an extraordinary face, from the other one.
         const double x = 2 * (u < 0 ? u + 1 : u), y = 2 * (v < 0 ? v + 1 : v);

@@ -63,24 +63,19 @@ private:
 };
 
 bool exists(const PatchTable& table, const Places& places, std::size_t i) {
-    const Index face = places.faces[i], faces = static_cast<Index>(table.face_begin.size()) - 1;
     const double u = places.uv[2 * i], v = places.uv[2 * i + 1];
-    return face >= 0 && face < faces && (!places.corners || places.corners[i] == 0) && u >= -tolerance && v >= -tolerance && u + v <= 1 + tolerance;
+    return places.faces[i] >= 0 && places.faces[i] < table.face_count() && places.corner(i) == 0 && u >= -tolerance && v >= -tolerance &&
+           u + v <= 1 + tolerance;
 }
 
 [[noreturn]] void refuse(const PatchTable& table, const Places& places, std::size_t i) {
-    const Index face = places.faces[i], faces = static_cast<Index>(table.face_begin.size()) - 1, corner = places.corners ? places.corners[i] : 0;
-    const std::string place = "place " + std::to_string(i) + ": ";
-    if (face < 0 || face >= faces)
-        throw BadInput(place + "face " + std::to_string(face) + " does not exist, the mesh has " + std::to_string(faces) + " faces (0 to " +
-                       std::to_string(faces - 1) + ")");
-    if (corner != 0)
-        throw BadInput(place + "corner " + std::to_string(corner) + " of face " + std::to_string(face) +
-                           " does not exist: on a triangle the corner is 0 and (u, v) runs over the whole face",
-                       Where{{}, {face}});
-    throw BadInput(place + "(u, v) = (" + std::to_string(places.uv[2 * i]) + ", " + std::to_string(places.uv[2 * i + 1]) +
+    check_face(table, places, i);
+    const Where where{{}, {places.faces[i]}};
+    if (places.corner(i) != 0)
+        throw BadInput(place_name(i) + corner_name(places, i) + " does not exist: on a triangle the corner is 0 and (u, v) runs over the whole face", where);
+    throw BadInput(place_name(i) + "(u, v) = (" + std::to_string(places.uv[2 * i]) + ", " + std::to_string(places.uv[2 * i + 1]) +
                        ") is not on the face: u, v and 1 - u - v must not be below 0",
-                   Where{{}, {face}});
+                   where);
 }
 
 /// Child and (s, t) in it, within its triangle whatever rounding does.

@@ -7,6 +7,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "host/array.h"
@@ -35,6 +36,8 @@ struct Places {
     const Index* faces = nullptr;
     const Index* corners = nullptr;
     const double* uv = nullptr;
+
+    Index corner(std::size_t i) const { return corners != nullptr ? corners[i] : 0; }
 };
 
 struct PatchTable {
@@ -57,6 +60,8 @@ struct PatchTable {
     Index square_beyond(Index corner, int side) const { return squares_beyond.empty() ? -1 : squares_beyond[3 * static_cast<std::size_t>(corner) + side]; }
     Index patch_count() const { return static_cast<Index>(patch_begin.size()) - 1; }
     int levels() const { return refiner->levels(); }
+    Index face_count() const { return static_cast<Index>(face_begin.size()) - 1; }
+    Index degree(Index face) const { return face_begin[face + 1] - face_begin[face]; }
     Index refined_count() const { return refiner->vertex_count(); }
     Index control_count() const { return refined_count() + static_cast<Index>(ghosts.offsets.size() - 1); }
 };
@@ -66,6 +71,13 @@ PatchTable build_patch_table(const Topology& topology, const Features& features,
 
 /// Refuses tables of more control points than can be numbered (OutOfMemory).
 void check_control_count(std::int64_t count);
+
+/// "place 17: ", "corner 2 of face 3".
+std::string place_name(std::size_t i);
+std::string corner_name(const Places& places, std::size_t i);
+/// Refuse a place whose face, or whose corner among the face's, does not exist (BadInput).
+void check_face(const PatchTable& table, const Places& places, std::size_t i);
+void check_corner(const PatchTable& table, const Places& places, std::size_t i);
 
 /// Finds places begin .. end - 1 of `places`; out: one each, from out[0] on. BadInput "place 17: ..." for the first that does not exist; not finite (u, v) do
 /// not exist.
