@@ -1,18 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "host/scheme/umbrella_masks.h"
 
-#include <cmath>
-
 #include "host/scheme/masks.h"
+#include "host/scheme/tangent_masks.h"
 
 namespace lcl {
 namespace {
-
-constexpr double pi = 3.14159265358979323846;
-
-/// cos and sin of 2 pi j / n.
-double cosine(Index j, Index n) { return std::cos(2 * pi * (j % n) / n); }
-double sine(Index j, Index n) { return 2 * (j % n) % n == 0 ? 0 : std::sin(2 * pi * (j % n) / n); }
 
 /// Limit point: (n^2 V + 4 sum E_j + sum F_j) / (n (n + 5)).
 void set_smooth_limit(UmbrellaMask& mask, Index n) {
@@ -21,14 +14,16 @@ void set_smooth_limit(UmbrellaMask& mask, Index n) {
     for (Index j = 0; j < n; ++j) mask.weights[1 + j][0] = 4 / whole, mask.weights[1 + n + j][0] = 1 / whole;
 }
 
-/// A_n cos(j t) on edges, cos(j t) + cos((j + 1) t) on faces, t = 2 pi / n; the second tangent with sines.
+void set_tangent(UmbrellaMask& mask, int tangent, const TangentMask& weights) {
+    mask.weights[0][tangent] = weights.vertex;
+    for (std::size_t j = 0; j < weights.edges.size(); ++j) mask.weights[1 + j][tangent] = weights.edges[j];
+    for (std::size_t j = 0; j < weights.faces.size(); ++j) mask.weights[1 + weights.edges.size() + j][tangent] = weights.faces[j];
+}
+
 void set_smooth_tangents(UmbrellaMask& mask, Index n) {
-    const double t = 2 * pi / n, a = 1 + std::cos(t) + std::cos(t / 2) * std::sqrt(2 * (9 + std::cos(t)));
-    for (Index j = 0; j < n; ++j) {
-        std::array<double, 3>&edge = mask.weights[1 + j], &face = mask.weights[1 + n + j];
-        edge[1] = a * cosine(j, n), edge[2] = a * sine(j, n);
-        face[1] = cosine(j, n) + cosine(j + 1, n), face[2] = sine(j, n) + sine(j + 1, n);
-    }
+    const TangentMasks tangents = catmull_clark_tangents(n);
+    set_tangent(mask, 1, tangents[0]);
+    set_tangent(mask, 2, tangents[1]);
 }
 
 void set_curve_limit(UmbrellaMask& mask, Index first, Index second) {
@@ -36,15 +31,10 @@ void set_curve_limit(UmbrellaMask& mask, Index first, Index second) {
     mask.weights[1 + first][0] = mask.weights[1 + second][0] = 1.0 / 6;
 }
 
-/// The tangent along the curve is E_0 - E_n; that across it the left eigenvector of the umbrella's subdivision matrix for the eigenvalue mu, h = pi/n.
+/// Along the curve E_0 - E_n, and across it.
 void set_boundary_tangents(UmbrellaMask& mask, Index n) {
-    const double h = pi / n, mu = (5 + std::cos(h) + std::cos(h / 2) * std::sqrt(18 + 2 * std::cos(h))) / 16;
-    const double s = std::cos(h / 2) / std::sin(h / 2), det = (mu - 1) * (mu - 0.25);
     mask.weights[1][1] = 1, mask.weights[1 + n][1] = -1;
-    mask.weights[0][2] = ((mu - 0.5) * s * (6 * mu - 1) + mu * std::sin(h)) / det;
-    mask.weights[1][2] = mask.weights[1 + n][2] = ((mu - 0.75) * mu * std::sin(h) + s * (6 * mu - 1) / 8) / det;
-    for (Index j = 1; j < n; ++j) mask.weights[1 + j][2] = 4 * (4 * mu - 1) * std::sin(j * h);
-    for (Index j = 0; j < n; ++j) mask.weights[2 + n + j][2] = std::sin(j * h) + std::sin((j + 1) * h);
+    set_tangent(mask, 2, catmull_clark_across(n));
 }
 
 double gram(const UmbrellaMask& mask, int a, int b) {
