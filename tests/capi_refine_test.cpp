@@ -129,6 +129,10 @@ TEST_CASE("what a refiner cannot take is refused in one sentence", "[capi][refin
     refuse(lcl_refiner_apply(refiner.get(), values.data(), 0, 3, LCL_PRECISION_MIXED, nullptr, 0), LCL_ERROR_INVALID_ARGUMENT, "out is NULL");
     values[7] = std::nan("");
     refuse(lcl_refiner_apply(refiner.get(), values.data(), 0, 3, LCL_PRECISION_MIXED, out.data(), 0), LCL_ERROR_BAD_INPUT, "vertex 2");
+    succeed(lcl_mesh_set_points(cube.get(), values.data(), 0));
+    lcl_mesh refined = nullptr;
+    refuse(lcl_refiner_get_mesh(refiner.get(), &refined), LCL_ERROR_BAD_INPUT, "vertex 2");
+    succeed(lcl_mesh_set_points(cube.get(), shapes::cube().mesh.positions.data(), 0));
     lcl_refine_options deep = LCL_REFINE_OPTIONS_INIT;
     deep.levels = 40;
     lcl_refiner none = nullptr;

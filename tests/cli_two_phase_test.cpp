@@ -167,6 +167,11 @@ TEST_CASE("wrong use of the two-phase options ends with exit code 2, bad files w
         CHECK(outcome.exit_code == c.exit_code);
         CHECK(contains(outcome.err, c.sentence));
     }
+    for (const char* empty : {"--normals ''", "--handles ''"})
+        CHECK(run(folder, std::string("interpolate in.obj -o m1.obj --lambda 0.3 ") + empty).exit_code == 2);
+    const Outcome map = run(folder, "interpolate in.obj -o unmapped.obj --lambda 0.3 --refined --map nowhere/map.csv");
+    CHECK(map.exit_code == 1);
+    CHECK_FALSE(folder.has("unmapped.obj"));
     const Outcome stl = run(folder, "interpolate in.obj -o m1.stl --refined --lambda 0.3");
     CHECK(stl.exit_code == 2);
     CHECK(contains(stl.err, "STL holds triangles only"));

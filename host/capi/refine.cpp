@@ -47,6 +47,7 @@ std::shared_ptr<const Refiner> make_refiner(lcl_mesh_s& mesh, const SchemeOption
 }
 
 std::unique_ptr<lcl_mesh_s> refined_handle(lcl_mesh_s& mesh, const std::shared_ptr<const Refiner>& refiner) {
+    mesh.topology();  // refuses points that are not finite, as they are now
     const PolygonMesh& polygons = mesh.file.mesh;
     const int levels = refiner->levels();
     Refinement refined = levels > 0 ? refined_mesh(*refiner, polygons.positions.data(), 3) : refine(polygons, mesh.named_features(), refiner->options(), 0);

@@ -10,6 +10,7 @@
 #include "host/cli/failure.h"
 #include "host/cli/interrupt.h"
 #include "host/cli/option_names.h"
+#include "host/cli/option_rules.h"
 #include "host/cli/scheme_choice.h"
 #include "host/cli/solve_step.h"
 #include "host/cli/two_phase_step.h"
@@ -79,7 +80,7 @@ lcl_status solve(Job& job, lcl_context context, const SolveCall& call) {
     const lcl_status status = call(options, report);
     const double elapsed = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     job.terminal.progress().end();
-    if (status != LCL_OK && !is_result(status)) throw two_phase_failure(job, status);
+    if (status != LCL_OK && !is_result(status)) throw two_phase_option(job.options) != nullptr ? two_phase_failure(job, status) : failure_of(status);
     note_solve(job, report, std::move(residuals));
     note_seconds(job.report.seconds, report, job.report.two_phase ? job.report.two_phase->seconds : 0.0, elapsed,
                  lcl_context_compile_seconds(context) - compiled);
@@ -147,11 +148,11 @@ void finish_refined(Job& job, lcl_mesh refined) {
 void run_interpolate(Job& job) {
     DeviceOpening device(job);
     const Mesh mesh = read_sound_input(job);
-    if (!makes_refined_mesh(job.options)) check_output_format(job, mesh.get());
+    if (two_phase_option(job.options) == nullptr) check_output_format(job, mesh.get());
     note_solve_parameters(job);
     const SchemeChoice scheme = choose_scheme(job, mesh.get());
     const std::vector<std::string> channels = choose_channels(job, mesh.get());
-    const bool makes_refined = makes_refined_mesh(job.options);
+    const bool makes_refined = two_phase_option(job.options) != nullptr;
     TwoPhaseChoice two_phase;
     if (makes_refined) two_phase = choose_two_phase(job, mesh.get(), scheme, channels);
     const Context context = device.finish();

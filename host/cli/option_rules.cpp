@@ -53,18 +53,12 @@ void check_report_name(const Options& options) {
     if (replaces) fail(exit_usage, "the report would replace another output, '" + options.report + "': give --report another name");
 }
 
-/// What makes the output the refined mesh of the two-phase scheme, or nothing.
-const char* refined_option(const Options& options) {
-    for (const char* flag : {"--refined", "--normals", "--handles", "--fair"})
-        if (options.has(flag)) return flag;
-    return nullptr;
-}
-
 void check_interpolate(const Options& options) {
-    const char* const flag = refined_option(options);
+    const char* const flag = two_phase_option(options);
     if (flag == nullptr && !options.map_file.empty())
         fail(exit_usage, "--map names the vertices of the refined mesh of the two-phase scheme: add --refined and --lambda, or leave it out");
     if (flag == nullptr) return;
+    if (options.has("--normals") && options.normals.empty()) fail(exit_usage, "--normals is empty: name a CSV, or say mesh");
     const bool has_ratio = options.has("--lambda") && (!options.lambda_file.empty() || (options.lambda > 0.0 && options.lambda < 1.0));
     if (!has_ratio)
         fail(exit_usage, std::string(flag) + " is of the two-phase scheme and needs --lambda L with a blend ratio above 0 and below 1, such as 0.33");
@@ -134,6 +128,12 @@ void check_texture(const Options& options) {
 }
 
 }  // namespace
+
+const char* two_phase_option(const Options& options) {
+    for (const char* flag : {"--refined", "--normals", "--handles", "--fair"})
+        if (options.has(flag)) return flag;
+    return nullptr;
+}
 
 void apply_rules(Options& options) {
     choose_scheme(options);

@@ -9,4 +9,7 @@ namespace lcl::cli {
 /// Completes options that were parsed one by one. Throws Failure with exit code 2 where they do not fit together.
 void apply_rules(Options& options);
 
+/// The option of `interpolate` that makes its output M^1 of the two-phase scheme instead of a control mesh with IN's faces; null: none.
+const char* two_phase_option(const Options& options);
+
 }  // namespace lcl::cli

@@ -71,6 +71,7 @@ void add_two_phase(Json& json, const lcl_two_phase_report& findings) {
     if (!std::isfinite(findings.energy[0])) return;
     json["energy"] = {number_or_null(findings.energy[0]), number_or_null(findings.energy[1])};
     json["two_phase"]["fair_iterations"] = findings.fair_iterations;
+    json["two_phase"]["fair_converged"] = findings.fair_converged != 0;
 }
 
 /// The rows of the CSV.

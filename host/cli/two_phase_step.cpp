@@ -88,8 +88,6 @@ std::string first_of(const std::int32_t* vertices, std::int32_t count) {
 
 }  // namespace
 
-bool makes_refined_mesh(const Options& options) { return options.refined || !options.normals.empty() || options.has("--handles") || options.fair > 0.0; }
-
 TwoPhaseChoice choose_two_phase(Job& job, lcl_mesh mesh, const SchemeChoice& scheme, const std::vector<std::string>& channels) {
     const Options& options = job.options;
     const std::vector<char> in_subset = subset_marks(mesh, scheme);

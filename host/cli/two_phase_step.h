@@ -10,9 +10,6 @@
 
 namespace lcl::cli {
 
-/// Whether the options ask for M^1 instead of a control mesh with IN's faces.
-bool makes_refined_mesh(const Options& options);
-
 /// Options of the library with the arrays that they point to. Moving keeps the arrays where they are; copying would not.
 struct TwoPhaseChoice {
     lcl_two_phase_options options = LCL_TWO_PHASE_OPTIONS_INIT;
