@@ -10,9 +10,7 @@
 #undef LCL_WIDTH
 #define LCL_WIDTH 4 /* positions */
 #include "rows.cl.h"
-
-/// Sine of the angle, squared, below which two tangents count as parallel.
-#define LCL_PARALLEL 1e-8f
+#include "normals.cl.h"
 
 inline realn lcl_minus_row(realn a, realn b) { return lcl_add(a, lcl_minus(b)); }
 

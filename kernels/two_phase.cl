@@ -10,6 +10,7 @@
 //     eps_k = a_k (R - (R.N) N) / sum a^2 + (a_k y_0 + b_k y_1 + c_k y_2) N,    G y = (R.N, -(b X).N, -(c X).N),    R = Q - V_inf,
 // G the Gram matrix of a, b, c. Without a normal N = 0 and eps_k = a_k R / sum a^2, equation 7.
 #include "reduce.cl.h"
+#include "two_phase.cl.h"
 
 /// A point, or three weights, with a fourth component that is 0 throughout: oclgrind's check for uninitialized values cannot follow vectors of three.
 typedef LCL_JOIN(LCL_REAL, 4) point;
@@ -86,10 +87,6 @@ __kernel void lcl_umbrella_scale(const int count, LCL_UMBRELLAS, const __global 
     const point limit = lcl_load(offsets[u], x) + sums.limit;
     for (int k = offsets[u]; k < offsets[u + 1]; ++k) lcl_store(limit + handles[u] * (lcl_load(k, x) - limit), k, x);
 }
-
-#define LCL_COUNTS 0x80000000u
-#define LCL_IS_COUNTED 0x40000000u
-#define LCL_PLACE 0x3fffffffu
 
 /// Rows of L, the mean of the neighbours that count minus the point. row_offsets: points + 1. neighbours: the edge neighbours of each point, with LCL_COUNTS where its row counts them, and
 /// LCL_IS_COUNTED where theirs counts it. lengths: points, how many count; 0: an empty row.

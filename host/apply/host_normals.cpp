@@ -4,12 +4,12 @@
 #include <array>
 #include <cmath>
 
+#include "kernels/normals.cl.h"
+
 namespace lcl {
 namespace {
 
 using Vector = std::array<double, 3>;
-
-constexpr double parallel = 1e-8;  // squared sine of the angle, as in the kernels
 
 double dot(const Vector& a, const Vector& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 Vector cross(const Vector& a, const Vector& b) { return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]}; }
@@ -57,7 +57,7 @@ private:
             for (std::size_t t = 0; t < 3; ++t) add(sums[t], tangents_.weights[3 * static_cast<std::size_t>(e) + t], tangents_.columns[e], row);
         for (Vector& sum : sums) sum = unit(sum);
         const Vector normal = cross(sums[0], sums[1]);
-        return unit(dot(normal, normal) > parallel ? normal : cross(sums[0], sums[2]));
+        return unit(dot(normal, normal) > LCL_PARALLEL ? normal : cross(sums[0], sums[2]));
     }
 
     void store_row(std::size_t i) {

@@ -8,6 +8,7 @@
 
 #include "host/refine/refine.h"
 #include "host/scheme/umbrella_masks.h"
+#include "kernels/two_phase.cl.h"
 
 namespace lcl {
 
@@ -43,7 +44,7 @@ struct UmbrellaTargets {
 /// points have a part in, the mean of the two along the curve; 0 at corners and isolated vertices.
 /// Vertices are numbered by their place in Umbrellas::order, so that neighbours are near each other in memory.
 struct FairRows {
-    static constexpr std::uint32_t counts = 0x80000000u, is_counted = 0x40000000u, place = 0x3fffffffu;
+    static constexpr std::uint32_t counts = LCL_COUNTS, is_counted = LCL_IS_COUNTED, place = LCL_PLACE;
     std::vector<std::uint32_t> offsets;  ///< vertex_count + 1
     Array<std::uint32_t>
         neighbours;        ///< all edge neighbours of each vertex: a place, `counts` where the vertex's row counts it, `is_counted` where its row does

@@ -588,12 +588,12 @@ typedef struct lcl_two_phase_report {
     int32_t wrong_side_count; /**< normals on the other side of the surface than the one it had without them: it may fold there */
     int32_t wrong_side[10];   /**< the first of these vertices */
     int32_t convex_count;     /**< convex vertices; counted where convex_handle and other_handle differ */
-    int32_t fair_iterations;
-    int32_t fair_converged;
-    double largest_repair; /**< largest distance from a vertex to its limit point before the repair, model units */
-    double max_error;      /**< the same in the result: rounding */
-    double energy[2];      /**< |L X|^2 before and after fairness, squares of model units; NaN without */
-    double seconds;        /**< of all but the solve */
+    int32_t fair_iterations;  /**< of conjugate gradients, 1000 at most */
+    int32_t fair_converged;   /**< 1: their residual fell to 1e-8 of what it was at first; 0: what 1000 of them gave */
+    double largest_repair;    /**< largest distance from a vertex to its limit point before the repair, model units */
+    double max_error;         /**< the same in the result: rounding */
+    double energy[2];         /**< |L X|^2 before and after fairness, squares of model units; NaN without */
+    double seconds;           /**< of all but the solve */
 } lcl_two_phase_report;
 #define LCL_TWO_PHASE_REPORT_INIT \
     { (uint32_t)sizeof(lcl_two_phase_report), 0, 0, 0, 0, {0}, 0, 0, 0, 0.0, 0.0, {0.0, 0.0}, 0.0 }
@@ -837,7 +837,8 @@ LCL_API lcl_status lcl_texture(lcl_context context, lcl_mesh mesh, const lcl_sch
  * - Catmull-Clark, quads: corner 0; (u, v) in [0, 1]^2 runs over the whole face, (0, 0) at its first vertex, u towards the second, v towards the last.
  * - Catmull-Clark, other faces: the sub-quad at `corner`: (0, 0) at that vertex, (1, 0) the middle of the edge to the next vertex, (0, 1) the middle of the
  *   edge to the previous one, (1, 1) the face's centre.
- * - Loop: corner 0; barycentric weights (1 - u - v, u, v) on the face's three vertices, u, v >= 0, u + v <= 1.
+ * - Loop: corner 0; barycentric weights (1 - u - v, u, v) on the face's three vertices, u, v >= 0, u + v <= 1 (1e-12
+ *   outside is taken to be on the border).
  * - Doo-Sabin: the patch of the vertex that the first refinement makes at `corner` of the face: (0, 0) the centre of the new face at the old vertex, (1, 0) of
  *   the one on the edge to the next vertex, (0, 1) of the one on the edge to the previous vertex, (1, 1) of the one inside the old face. Where the edge to the
  *   next vertex is sharp (boundary or crease), v runs from -1, the curve, to 1; where the one to the previous vertex is, u does.
@@ -845,10 +846,10 @@ LCL_API lcl_status lcl_texture(lcl_context context, lcl_mesh mesh, const lcl_sch
 
 /** Patches of the limit surface: regular ones are B-splines (Catmull-Clark bicubic, Doo-Sabin biquadratic) or box splines (Loop), those at extraordinary
  * vertices and faces are infinite sequences of such, evaluated by the eigenstructure of the local subdivision (Stam 1998); at sharp features by its powers.
- * Exact everywhere: no patch is replaced by another. alpha rules the first refinement, which is made explicitly. Time and memory linear in the mesh; the
- * eigenstructures of the valences that occur are computed once a process. precision: that of control points and evaluation; MIXED is double where the device
- * has it. The mesh's points are the first control points. Evaluation takes a few nanoseconds a point. LCL_ERROR_INVALID_ARGUMENT for lambda (a two-phase
- * surface is evaluated through its mesh M^1), alpha_auto, subset and owned. */
+ * Exact everywhere: no patch is replaced by another. alpha rules the first refinement, which is made explicitly. Time and memory linear in the mesh, but that a
+ * vertex with k faces at a sharp feature takes k^3 (some 100 faces: seconds); the eigenstructures of the valences that occur are computed once a process.
+ * precision: that of control points and evaluation; MIXED is double where the device has it. The mesh's points are the first control points. Evaluation takes a
+ * few nanoseconds a point. LCL_ERROR_INVALID_ARGUMENT for lambda (a two-phase surface is evaluated through its mesh M^1), alpha_auto, subset and owned. */
 LCL_API lcl_status lcl_limit_surface_create(lcl_context context, lcl_mesh mesh, const lcl_scheme_options* scheme, lcl_precision precision,
                                             lcl_limit_surface* surface);
 LCL_API void lcl_limit_surface_retain(lcl_limit_surface surface);
@@ -897,9 +898,10 @@ typedef struct lcl_closest_points {
 #define LCL_CLOSEST_POINTS_INIT \
     { (uint32_t)sizeof(lcl_closest_points), NULL, NULL, NULL, NULL, NULL, NULL }
 
-/** For each of `count` points (rows of three, `stride` values apart, 0: 3) the closest point of the limit surface: the nearest of a mesh refined to the limit,
- * then Newton on the exact surface, across patch borders. A point of the boundary counts where nothing nearer is. Where the surface folds several times
- * within the size of a refined face, a neighbouring local minimum may be found. LCL_ERROR_BAD_INPUT for points that are not finite or more than 1e12 times as
+/** For each of `count` points (rows of three, `stride` values apart, 0: 3) the closest point of the limit surface: the nearest of a grid of points in every
+ * face, then Newton on the exact surface, across patch borders, until a step is shorter than 1e-12 of the surface's size (in single precision 1e-7). A point of
+ * the boundary counts where nothing nearer is. Where the surface folds within the size of a face, a neighbouring local minimum may be found. A distance to a
+ * point without a normal is positive. LCL_ERROR_BAD_INPUT for points that are not finite or more than 1e12 times as
  * far away as the surface is large. */
 LCL_API lcl_status lcl_limit_surface_closest(lcl_limit_surface surface, size_t count, const double* points, size_t stride, const lcl_closest_points* closest);
 
