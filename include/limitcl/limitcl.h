@@ -34,6 +34,8 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include <limitcl/limitcl_engine.h>
+
 #ifdef __cplusplus
 extern "C" {
 #endif
@@ -104,6 +106,7 @@ typedef struct lcl_refiner_s* lcl_refiner;             /**< a refinement of one 
 typedef struct lcl_limit_surface_s* lcl_limit_surface; /**< the limit surface of a mesh as patches, with its control points on a context's device */
 typedef struct lcl_samples_s* lcl_samples;             /**< places on a limit surface, found once and evaluated often */
 typedef struct lcl_tangents_s* lcl_tangents;           /**< limit tangents at the vertices of an operator's mesh, for normals */
+typedef struct lcl_cloud_s* lcl_cloud;                 /**< points with normals and colours where there are any */
 
 /* ---------------------------------------------------------------- devices and contexts */
 
@@ -158,8 +161,15 @@ LCL_API lcl_status lcl_context_selftest(lcl_context context, lcl_selftest_callba
 
 /* ---------------------------------------------------------------- meshes */
 
-typedef LCL_ENUM(lcl_format){LCL_FORMAT_BY_ENDING = 0, LCL_FORMAT_OBJ = 1, LCL_FORMAT_OFF = 2,
-                             LCL_FORMAT_PLY = 3,       LCL_FORMAT_STL = 4, LCL_FORMAT_OM = 5} lcl_format;
+typedef LCL_ENUM(lcl_format){LCL_FORMAT_BY_ENDING = 0,
+                             LCL_FORMAT_OBJ = 1,
+                             LCL_FORMAT_OFF = 2,
+                             LCL_FORMAT_PLY = 3,
+                             LCL_FORMAT_STL = 4,
+                             LCL_FORMAT_OM = 5,
+                             LCL_FORMAT_XYZ = 6 /**< this and what follows: points alone */,
+                             LCL_FORMAT_CSV = 7,
+                             LCL_FORMAT_PTS = 8} lcl_format;
 
 typedef LCL_ENUM(lcl_type){LCL_TYPE_DOUBLE = 0, LCL_TYPE_FLOAT = 1} lcl_type;
 
@@ -904,6 +914,101 @@ typedef struct lcl_closest_points {
  * point without a normal is positive. LCL_ERROR_BAD_INPUT for points that are not finite or more than 1e12 times as
  * far away as the surface is large. */
 LCL_API lcl_status lcl_limit_surface_closest(lcl_limit_surface surface, size_t count, const double* points, size_t stride, const lcl_closest_points* closest);
+
+/* ---------------------------------------------------------------- surfaces from point clouds */
+
+/** Points, and what may stand beside them: normals, colours. Copies what it is given. points: count rows of three, `stride` values apart (0: 3); normals: NULL,
+ * or as many, of any length above 0, outwards. At most 2^31 - 1 points; finite (LCL_ERROR_BAD_INPUT names the first that is not). */
+LCL_API lcl_status lcl_cloud_create(size_t count, const double* points, size_t stride, const double* normals, size_t normal_stride, lcl_cloud* cloud);
+/** Reads points: the vertices of .ply .off .obj (faces are left out, with a note), and text: .xyz, a point a line, x y z [nx ny nz | r g b | nx ny nz r g b],
+ * whole numbers from 0 to 255 being colours; .pts, the same after a line with their count, x y z [intensity] [r g b]; .csv, a header with x, y, z and maybe nx,
+ * ny, nz, red, green, blue. Each also with .gz. path "-" is standard input and needs a format. LCL_ERROR_BAD_INPUT names the line or point. */
+LCL_API lcl_status lcl_cloud_read(const char* path, lcl_format format, lcl_cloud* cloud);
+/** The same from bytes in memory; `name` stands in messages. */
+LCL_API lcl_status lcl_cloud_read_memory(const void* bytes, size_t size, lcl_format format, const char* name, lcl_cloud* cloud);
+LCL_API void lcl_cloud_retain(lcl_cloud cloud);
+LCL_API void lcl_cloud_release(lcl_cloud cloud);
+LCL_API size_t lcl_cloud_count(lcl_cloud cloud);
+LCL_API int32_t lcl_cloud_has_normals(lcl_cloud cloud);
+LCL_API int32_t lcl_cloud_has_colours(lcl_cloud cloud);
+/** Each array count x 3, or NULL. Normals as they came; colours from 0 to 1. LCL_ERROR_INVALID_ARGUMENT for what the cloud does not have. */
+LCL_API lcl_status lcl_cloud_get(lcl_cloud cloud, double* points, double* normals, double* colours);
+/** Sentences on what was left out or is doubtful, from reading. */
+LCL_API int32_t lcl_cloud_note_count(lcl_cloud cloud);
+LCL_API const char* lcl_cloud_note(lcl_cloud cloud, int32_t index);
+
+typedef LCL_ENUM(lcl_fit){
+    LCL_FIT_INTERPOLATE = 0, /**< the limit surface passes through the vertices of the approximation */
+    LCL_FIT_LEAST_SQUARES = 1 /**< its control points make the squared distances of all points, and a bending energy, smallest */} lcl_fit;
+
+typedef LCL_ENUM(lcl_surface_phase){LCL_SURFACE_APPROXIMATE = 0, LCL_SURFACE_SIMPLIFY = 1, LCL_SURFACE_SOLVE = 2, LCL_SURFACE_MEASURE = 3,
+                                    LCL_SURFACE_REFINE = 4} lcl_surface_phase;
+/** round: of the fit, from 0; fraction: of the phase, negative where it is not known; max_distance: of the last round, model units, NaN before. Return 0 to
+ * cancel (LCL_ERROR_CANCELLED), anything else to go on. */
+typedef int32_t (*lcl_surface_callback)(void* user, lcl_surface_phase phase, int32_t round, double fraction, double max_distance);
+
+typedef struct lcl_surface_options {
+    uint32_t struct_size;
+    lcl_fit fit;
+    double tolerance;                        /**< of the distance of every point, relative to the diagonal; 0: 1e-3 */
+    int32_t max_vertices;                    /**< at most so many, 4 or more; 0: as many as the tolerance takes */
+    int32_t max_rounds;                      /**< solves of the whole fit; 0: 30 */
+    int32_t fill_holes;                      /**< boundary loops of at most so many edges are filled, 3 to 1000; 0: none */
+    double fair;                             /**< least squares: W, 0 or above; the _INIT holds 1e-3 */
+    lcl_boundary boundary;                   /**< of the mesh that comes out */
+    double crease_angle_degrees;             /**< > 0: edges of the approximation whose face normals differ by more are creases, and stay */
+    const lcl_engine_option* engine_options; /**< engine_option_count of them, for the engine */
+    size_t engine_option_count;
+    lcl_precision precision;
+    double solve_tolerance; /**< of each solve, relative to the diagonal; 0: 1e-6, and never more than a tenth of `tolerance` */
+    int32_t max_iterations; /**< of each solve; 0: 200 */
+    int32_t keep_going;     /**< 1: go on although A is singular or indefinite, or a solve does not converge; the status says so */
+    lcl_surface_callback progress;
+    void* progress_user;
+} lcl_surface_options;
+#define LCL_SURFACE_OPTIONS_INIT                                                                                                                            \
+    {                                                                                                                                                       \
+        (uint32_t)sizeof(lcl_surface_options), LCL_FIT_INTERPOLATE, 0.0, 0, 0, 0, 1e-3, LCL_BOUNDARY_DEFAULT, 0.0, NULL, 0, LCL_PRECISION_MIXED, 0.0, 0, 0, \
+            NULL, NULL                                                                                                                                      \
+    }
+
+typedef struct lcl_surface_report {
+    uint32_t struct_size;
+    int64_t point_count;                                 /**< points that were measured */
+    int64_t duplicate_count;                             /**< points at the place of an earlier one, dropped before all else */
+    int64_t left_out_count;                              /**< outliers by the engine's options: not measured */
+    int64_t unused_count;                                /**< measured points that are no vertex of the engine's approximation */
+    int32_t approximation_vertices, approximation_faces; /**< what the engine gave, mended */
+    int32_t components, boundary_loops;                  /**< of that */
+    int32_t filled_holes, dropped_faces, split_vertices; /**< mended: holes filled on request, faces beyond two at an edge, vertices where surfaces touched */
+    int32_t simplified_vertices;                         /**< before the first solve */
+    int32_t vertices, faces, creases;                    /**< of the control mesh */
+    int32_t rounds;                                      /**< solves; least squares: corrections of the parameters */
+    int32_t iterations;                                  /**< of all solves */
+    int32_t converged;                                   /**< max <= tolerance x diagonal */
+    double diagonal;                                     /**< of the vertices of the approximation, model units */
+    double rms, p95, max;                                /**< distances of the points to the limit surface, model units */
+    int64_t outside_count;                               /**< points farther away than the tolerance */
+    double interpolation_error;                          /**< interpolation: largest |limit point - vertex|, model units; NaN for least squares */
+    double seconds_approximate, seconds_simplify, seconds_solve, seconds_measure, seconds_refine, seconds_total;
+    char message[512]; /**< one sentence where the tolerance is not reached; "" otherwise */
+} lcl_surface_report;
+#define LCL_SURFACE_REPORT_INIT \
+    { (uint32_t)sizeof(lcl_surface_report), 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0.0, 0.0, 0.0, 0.0, 0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, "" }
+
+/** Control mesh of a limit surface through a point cloud (Doo-Sabin paper): the engine makes a polyhedral approximation; it is mended (edges of three faces,
+ * vertices where surfaces touch), oriented (closed parts outwards, open ones by the cloud's normals where it has any), its holes are filled on request, and it
+ * is simplified by edge collapses (quadrics) within the tolerance; its vertices are interpolated; the distances of all points to the limit surface are
+ * measured; where they exceed the tolerance points become vertices, and so on, until none does or max_vertices is reached. All parts of the cloud are kept.
+ * scheme: NULL or LCL_SCHEME_DEFAULT: Doo-Sabin; subset, owned, lambda and lambda_per_vertex are refused. Colours of the cloud go to the nearest vertices.
+ * mesh: control points, with the creases and corners that it is to be read with; its notes of kind LCL_NOTE_WARNING tell what was mended. report may be NULL.
+ * LCL_ERROR_BAD_INPUT: fewer than four different points, all of them in a plane, an engine that finds no surface; LCL_ERROR_INVALID_ARGUMENT: options, also the
+ * engine's. Results with mesh and report: LCL_ERROR_NOT_CONVERGED where the tolerance is not reached and max_vertices is 0 (with it: LCL_OK, converged 0), or a
+ * solve ends above its tolerance; LCL_ERROR_SINGULAR, LCL_ERROR_INDEFINITE. Beside what the engine takes, memory is some 500 bytes a point and vertex of the
+ * approximation. Costs the engine's time, a simplification of some 20 microseconds a vertex, and a solve and a search of closest points (some 2 microseconds a
+ * point) a round. */
+LCL_API lcl_status lcl_surface(lcl_context context, lcl_cloud cloud, const lcl_engine* engine, const lcl_scheme_options* scheme,
+                               const lcl_surface_options* options, lcl_mesh* mesh, lcl_surface_report* report);
 
 #ifdef __cplusplus
 }
