@@ -42,11 +42,11 @@ constexpr Option outlier_neighbours_option = {"outlier-neighbours", "20", Kind::
 
 const Option poisson_options[] = {
     {"depth", "0", Kind::whole, 0.0, 12.0, "of the octree: cells are as small as the cloud's width / 2^depth (0: log2 of the points / 2, + 2; 1 to 3 count as 4)"},
-    {"trim", "5", Kind::number, 0.0, no_limit, "take away triangles farther from the points than so many times their spacing (0: none, and the surface closes over every gap)"},
+    {"trim", "4", Kind::number, 0.0, no_limit, "take away triangles farther from the points than so many times their spacing (0: none, and the surface closes over every gap)"},
     neighbours_option,
     outliers_option,
     outlier_neighbours_option};
-const Option ball_options[] = {{"radii", "1,2,4", Kind::list, 0.01, 1e6, "of the ball, times the points' mean spacing, one after the other"},
+const Option ball_options[] = {{"radii", "2,4,8", Kind::list, 0.01, 1e6, "of the ball, times the points' mean spacing, one after the other"},
                                neighbours_option,
                                outliers_option,
                                outlier_neighbours_option};
