@@ -130,8 +130,9 @@ public:
         batch_.resize(count);
     }
 
-    void run(std::size_t first, const ClosestPoints& out) {
-        start();
+    void run(std::size_t first, const ClosestPoints& out, const Places* start) {
+        if (start != nullptr) start_at(first, *start);
+        else start_at_seeds();
         for (int step = 0; step < most_steps && !active_.empty(); ++step) {
             evaluate_trials();
             take_trials();
@@ -149,16 +150,27 @@ private:
     }
 
     /// Every search begins at the seed that is nearest to its point.
-    void start() {
+    void start_at_seeds() {
         for_each(searches_.size(), [&](std::size_t i) {
             Index nearest = 0;
             float square = 0, at[3];
             for (std::size_t c = 0; c < 3; ++c) at[c] = search_.normalised(points_[i * stride_ + c], c);
             search_.seeds_->tree->knnSearch(at, 1, &nearest, &square);
-            searches_[i].best = search_.seeds_->places[nearest];
-            active_[i] = static_cast<Index>(i);
-            batch_.set(i, search_.charts_.surface_place(searches_[i].best));
+            begin_at(i, search_.seeds_->places[nearest]);
         });
+    }
+
+    void start_at(std::size_t first, const Places& start) {
+        for_each(searches_.size(), [&](std::size_t i) {
+            const std::size_t from = first + i;
+            begin_at(i, search_.charts_.chart_place(start.faces[from], start.corner(from), start.uv[2 * from], start.uv[2 * from + 1]));
+        });
+    }
+
+    void begin_at(std::size_t i, const ChartPlace& place) {
+        searches_[i].best = place;
+        active_[i] = static_cast<Index>(i);
+        batch_.set(i, search_.charts_.surface_place(place));
     }
 
     void evaluate_trials() {
@@ -247,10 +259,10 @@ private:
     SamplePiece samples_;
 };
 
-void ClosestSearch::find(const double* points, std::size_t stride, std::size_t count, const ClosestPoints& out) {
+void ClosestSearch::find(const double* points, std::size_t stride, std::size_t count, const ClosestPoints& out, const Places* start) {
     surface_.prepare_for(evaluations_a_point * count);
     for (std::size_t first = 0; first < count; first += DeviceSurface::piece_samples)
-        Piece(*this, points + first * stride, stride, std::min(DeviceSurface::piece_samples, count - first)).run(first, out);
+        Piece(*this, points + first * stride, stride, std::min(DeviceSurface::piece_samples, count - first)).run(first, out, start);
 }
 
 }  // namespace lcl
