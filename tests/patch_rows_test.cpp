@@ -45,15 +45,14 @@ private:
     }
 
     /// Control points are within 2 of the origin. Weights of first derivatives by (u, v) add up to at most 8 in size (patches are a half or a quarter of a
-    /// face), of second ones to 64. Towards an extraordinary point at distance r they grow like r^(-1/3) at most (2 lambda < 2^(1/3) for all valences), second ones
-    /// like r^(-4/3). 300 roundings: sums of up to 70 products, twice (projection, cell).
+    /// face), of second ones to 64. Towards an extraordinary point at distance r they grow like r^(-1/3) at most (2 lambda < 2^(1/3) for all valences), second
+    /// ones like r^(-4/3). 300 roundings: sums of up to 70 products, twice (projection, cell).
     void check_place(const PatchPlace& place) const {
         const Index begin = table_.patch_begin[place.patch], K = rows_.point_count(place.patch);
         Eigen::Matrix<double, 6, Eigen::Dynamic, Eigen::RowMajor> rows(6, K);
         rows_.write(place, 6, rows.data());
         Eigen::Matrix<double, Eigen::Dynamic, 3> points(K, 3);
-        for (Index i = 0; i < K; ++i)
-            points.row(i) = Eigen::Map<const Eigen::RowVector3d>(&control_[3 * static_cast<std::size_t>(table_.control[begin + i])]);
+        for (Index i = 0; i < K; ++i) points.row(i) = Eigen::Map<const Eigen::RowVector3d>(&control_[3 * static_cast<std::size_t>(table_.control[begin + i])]);
         const Eigen::Matrix<double, 6, 3> values = rows * points;
         const SurfaceJet right = reference_jet(table_, control_, place);
         const bool is_irregular = table_.kind[place.patch] >= 0, is_tip = is_irregular && place.s == 0 && place.t == 0;

@@ -11,8 +11,8 @@
 namespace lcl {
 namespace {
 
-constexpr int most_points = 16;                                                                       // of a regular patch
-constexpr int orders[6][2] = {{0, 0}, {1, 0}, {0, 1}, {2, 0}, {1, 1}, {0, 2}};                        // of the derivatives by s and t
+constexpr int most_points = 16;                                                                          // of a regular patch
+constexpr int orders[6][2] = {{0, 0}, {1, 0}, {0, 1}, {2, 0}, {1, 1}, {0, 2}};                           // of the derivatives by s and t
 constexpr int monomial_count = 15, box_points = 12, box_spline[monomial_count * 16] = {LCL_BOX_SPLINE};  // rows of 16, four of them padding
 
 /// Weights of the points of an interval of a uniform B-spline, and their first two derivatives.

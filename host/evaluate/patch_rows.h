@@ -16,8 +16,9 @@ public:
 
     /// K, the control points of a patch: control[patch_begin[patch] + i] of the table, i = 0 .. K - 1.
     int point_count(Index patch) const { return table_.patch_begin[patch + 1] - table_.patch_begin[patch]; }
-    /// Weights of the patch's control points for the first `count` of S, S_u, S_v, S_uu, S_uv, S_vv, count 1, 3 or 6. rows: count x K, one after the other; those
-    /// of S sum to 1, the others to 0. At an irregular patch's (0, 0), where derivatives do not exist, their rows are NaN. K^2 operations, 200 in regular patches.
+    /// Weights of the patch's control points for the first `count` of S, S_u, S_v, S_uu, S_uv, S_vv, count 1, 3 or 6. rows: count x K, one after the other;
+    /// those of S sum to 1, the others to 0. At an irregular patch's (0, 0), where derivatives do not exist, their rows are NaN. K^2 operations, 200 in regular
+    /// patches.
     void write(const PatchPlace& place, int count, double* rows) const;
 
 private:

@@ -72,8 +72,8 @@ CellIntegrals integrate(Scheme scheme, const Lattice& points, const MatrixXd& fu
         const Eigen::Matrix2d by = map.middleRows<2>(1).inverse();  // row s: (x_s, y_s); its inverse has rows x: (s_x, t_x)
         const MatrixXd second = jets.bottomRows(3) - map.bottomRows<3>() * (by * jets.middleRows(1, 2));
         Eigen::Matrix3d turn;
-        turn << by(0, 0) * by(0, 0), 2 * by(0, 0) * by(0, 1), by(0, 1) * by(0, 1),                             //
-            by(0, 0) * by(1, 0), by(0, 0) * by(1, 1) + by(0, 1) * by(1, 0), by(0, 1) * by(1, 1),               //
+        turn << by(0, 0) * by(0, 0), 2 * by(0, 0) * by(0, 1), by(0, 1) * by(0, 1),                //
+            by(0, 0) * by(1, 0), by(0, 0) * by(1, 1) + by(0, 1) * by(1, 0), by(0, 1) * by(1, 1),  //
             by(1, 0) * by(1, 0), 2 * by(1, 0) * by(1, 1), by(1, 1) * by(1, 1);
         const MatrixXd hessians = turn * second;
         const double area = node.weight / std::abs(by.determinant());

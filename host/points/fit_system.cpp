@@ -17,7 +17,7 @@ using Eigen::MatrixXd;
 using Points = Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor>;
 using Rows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-constexpr std::size_t smallest_piece = 256;  // of patches, and of rows that are made of other rows
+constexpr std::size_t smallest_piece = 256;                  // of patches, and of rows that are made of other rows
 constexpr std::size_t block_entries = std::size_t{1} << 20;  // of the matrices of patches that are held at a time
 constexpr Index sample_block = 64;                           // rows of a patch's samples that are multiplied at a time
 constexpr std::size_t sum_block = 4096;                      // sums are those of blocks, so that threads do not change them
@@ -97,8 +97,7 @@ Stencils rows_of(const RefinerStep& step) {
 /// The control points of patches, refined ones and ghosts, over the mesh's points.
 Stencils control_rows(const PatchTable& table) {
     Stencils rows;
-    for (const RefinerStep& step : table.refiner->steps())
-        rows = row_count(rows) == 0 ? rows_of(step) : product(rows_of(step), rows, table.point_count);
+    for (const RefinerStep& step : table.refiner->steps()) rows = row_count(rows) == 0 ? rows_of(step) : product(rows_of(step), rows, table.point_count);
     const Stencils ghosts = product(table.ghosts, rows, table.point_count);
     const std::size_t first = rows.indices.size();
     for (std::size_t i = 1; i < ghosts.offsets.size(); ++i) rows.offsets.push_back(first + ghosts.offsets[i]);
@@ -124,9 +123,9 @@ double dot(const std::vector<double>& a, const std::vector<double>& b) {
 /// Samples sorted by patch.
 struct SortedSamples {
     std::vector<PatchPlace> places;
-    std::vector<std::size_t> order;    ///< the samples of patch p stand at starts[p] .. starts[p + 1] - 1
-    std::vector<std::size_t> starts;   ///< patch_count + 1
-    std::vector<Index> patches;        ///< those with samples
+    std::vector<std::size_t> order;   ///< the samples of patch p stand at starts[p] .. starts[p + 1] - 1
+    std::vector<std::size_t> starts;  ///< patch_count + 1
+    std::vector<Index> patches;       ///< those with samples
 };
 
 SortedSamples sort_samples(const PatchTable& table, const Places& places) {

@@ -10,16 +10,16 @@
 
 namespace lcl {
 
-/// N P = B, the minimum of  1/n sum_i |S(x_i) - p_i|^2 + W energy(P):  N = 1/n sum_i r_i^T r_i + W E, B = 1/n sum_i r_i^T p_i, r_i the row that gives S(x_i) from
-/// the mesh's points. N is sparse, symmetric and positive semidefinite; its entries are those of vertices that share a patch.
+/// N P = B, the minimum of  1/n sum_i |S(x_i) - p_i|^2 + W energy(P):  N = 1/n sum_i r_i^T r_i + W E, B = 1/n sum_i r_i^T p_i, r_i the row that gives S(x_i)
+/// from the mesh's points. N is sparse, symmetric and positive semidefinite; its entries are those of vertices that share a patch.
 class FitSystem {
 public:
     /// Keeps a reference. Time and memory linear in the mesh (some 10 kB a vertex where it is refined twice: Doo-Sabin, and Catmull-Clark on other faces than
     /// quads; else 3 kB), but that a vertex of valence k takes k^3.
     FitSystem(const PatchTable& table, double fair);
 
-    /// points: one a place (count x 3), model units, of which `origin` is taken away: then the control points of the equations are those seen from there. Errors
-    /// as locate(). Time linear in the samples, memory too: 32 bytes each. The same bits whatever the number of threads.
+    /// points: one a place (count x 3), model units, of which `origin` is taken away: then the control points of the equations are those seen from there.
+    /// Errors as locate(). Time linear in the samples, memory too: 32 bytes each. The same bits whatever the number of threads.
     void set_samples(const Places& places, const double* points, const std::array<double, 3>& origin = {0, 0, 0});
     /// Conjugate gradients with Jacobi's preconditioner, from `control` (point_count x 3) on, until the residual is `tolerance` times what it was. What N does
     /// not see stays as it is: with W = 0 vertices whose part of the surface has no samples; isolated ones always. Returns the number of iterations.

@@ -14,9 +14,9 @@
 namespace lcl {
 namespace {
 
-constexpr double smallest_change = 1e-3;   // of the root mean square, in a correction
-constexpr double solve_tolerance = 1e-4;   // of what the residual is where a correction begins: the next one goes on from there
-constexpr int most_iterations = 500;       // of conjugate gradients in a correction
+constexpr double smallest_change = 1e-3;  // of the root mean square, in a correction
+constexpr double solve_tolerance = 1e-4;  // of what the residual is where a correction begins: the next one goes on from there
+constexpr int most_iterations = 500;      // of conjugate gradients in a correction
 
 class Stopwatch {
 public:
