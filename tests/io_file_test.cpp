@@ -74,7 +74,7 @@ TEST_CASE("files that are missing, folders or empty are refused in words", "[io]
     const auto error = [&](const std::string& name) { return error_of<lcl::FileError>([&] { lcl::read_mesh(folder.file(name)); }); };
     CHECK(error("none.obj") == "cannot read " + folder.file("none.obj") + ": No such file or directory");
     std::filesystem::create_directory(folder.file("folder.obj"));
-    CHECK(error("folder.obj") == folder.file("folder.obj") + " is a directory; name a mesh file in it");
+    CHECK(error("folder.obj") == folder.file("folder.obj") + " is a directory; name a file in it");
     for (const char* name : {"a.obj", "a.off", "a.ply", "a.stl", "a.om", "a.obj.gz"}) {
         write_bytes(folder.file(name), "");
         CHECK(error_of<lcl::BadInput>([&] { lcl::read_mesh(folder.file(name)); }) == folder.file(name) + " is empty; it holds no mesh");

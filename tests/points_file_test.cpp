@@ -137,6 +137,7 @@ TEST_CASE("intensity stands before colours or normals", "[points]") {
     CHECK(coloured.colours == Numbers{1, 0, 0.2, 0, 0.4, 0});
     CHECK(coloured.warnings == std::vector<std::string>{"column 4 (intensity) was left out"});
     CHECK(xyz("0 0 0 5 0 0 1\n1 2 3 -7 0.6 0.8 0\n").normals == Numbers{0, 0, 1, 0.6, 0.8, 0});
+    CHECK(xyz("0 0 0 5 0 0 0\n1 2 3 -7 0 0 0\n").normals.empty());
     const PointCloud curved = xyz("0 0 0 0 0 1 0.01\n1 2 3 0.6 0.8 0 0.5\n");  // normals and curvature
     CHECK(curved.normals == Numbers{0, 0, 1, 0.6, 0.8, 0});
     CHECK(curved.warnings == std::vector<std::string>{"column 7 was left out"});
