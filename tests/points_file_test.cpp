@@ -356,6 +356,14 @@ TEST_CASE("points come from files, packed or not, and from standard input with a
     }
     write_bytes(folder.file("scan.txt"), rows);
     CHECK(lcl::read_points(folder.file("scan.txt"), FileFormat::xyz).points == expected);
+    {
+        const Redirection input(STDIN_FILENO, folder.file("packed.xyz"), "rb");
+        CHECK(lcl::read_points("-", FileFormat::xyz).points == expected);
+    }
+    {
+        const Redirection input(STDIN_FILENO, folder.file("a.xyz"), "rb");
+        CHECK(contains(error_of<lcl::BadInput>([] { lcl::read_points("-", FileFormat::pts); }), "standard input:1: the first line of a .pts file"));
+    }
     write_bytes(folder.file("false.xyz.gz"), rows);
     CHECK(contains(error_of<lcl::BadInput>([&] { lcl::read_points(folder.file("false.xyz.gz")); }), "is no gzip file"));
     write_bytes(folder.file("cut.xyz.gz"), compressed(rows).substr(0, 15));
