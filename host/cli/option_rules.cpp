@@ -17,11 +17,10 @@ namespace {
 constexpr const char* point_formats = ".ply .xyz .csv .off .obj .pts, each also with .gz";
 
 /// Shared options that say something of a mesh which comes in.
-const std::map<std::string, const char*> not_of_clouds = {
-    {"--lambda", "the two-phase scheme begins with a mesh, and here one comes out: leave it out"},
-    {"--creases", "the vertices of OUT are not known beforehand: give --crease-angle DEG"},
-    {"--corners", "the vertices of OUT are not known beforehand: give --crease-angle DEG"},
-    {"--channels", "a cloud has coordinates alone, and its colours come with them: leave it out"}};
+const std::map<std::string, const char*> not_of_clouds = {{"--lambda", "the two-phase scheme begins with a mesh, and here one comes out: leave it out"},
+                                                          {"--creases", "the vertices of OUT are not known beforehand: give --crease-angle DEG"},
+                                                          {"--corners", "the vertices of OUT are not known beforehand: give --crease-angle DEG"},
+                                                          {"--channels", "a cloud has coordinates alone, and its colours come with them: leave it out"}};
 
 bool reads_cloud(const Options& options) { return options.command == "surface"; }
 
