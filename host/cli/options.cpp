@@ -209,12 +209,14 @@ std::string engine_help() {
         std::istringstream options(engine.options);
         for (std::string line; std::getline(options, line);) text += "\n    " + line;
     }
-    return engines.empty() ? text + " none" : text + "\n";
+    if (engines.empty()) text += " none";
+    for (const std::string& warning : warnings) text += "\n  warning: " + warning;
+    return text + "\n";
 }
 
 std::string Parser::version_text() {
-    std::string text =
-        std::string("limitcl ") + lcl_version_string() + "\n" + lcl_build_string() + "\nfile formats: .obj .off .ply .stl .om, each also with .gz\n";
+    std::string text = std::string("limitcl ") + lcl_version_string() + "\n" + lcl_build_string() +
+                       "\nfile formats: .obj .off .ply .stl .om of meshes, .ply .xyz .csv .off .obj .pts of points, each also with .gz\n";
     std::set<std::string> platforms;
     for (int index = 0; index < lcl_device_count(); ++index) {
         lcl_device_info info = LCL_DEVICE_INFO_INIT;
