@@ -2,6 +2,8 @@
 // What every engine needs around the library that does its work: options as a table, failures as sentences, and a way to stop in the middle.
 #pragma once
 
+#include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
 #include <cstdint>
@@ -112,6 +114,29 @@ std::string options_text(const Option (&table)[Count]) {
     return text;
 }
 
+/// Positions with the cloud's middle in the origin and a spacing of about one: the libraries compare with constants of their own, and some count in floats.
+struct Frame {
+    std::array<double, 3> middle;
+    double scale;  ///< a power of two
+
+    explicit Frame(const lcl_engine_points& cloud) {
+        std::array<double, 3> low, high;
+        for (int axis = 0; axis < 3; ++axis) {
+            low[axis] = high[axis] = cloud.points[axis];
+            for (std::int64_t i = 1; i < cloud.count; ++i) {
+                low[axis] = std::min(low[axis], cloud.points[3 * i + axis]);
+                high[axis] = std::max(high[axis], cloud.points[3 * i + axis]);
+            }
+            middle[axis] = low[axis] / 2 + high[axis] / 2;
+        }
+        const double diagonal = std::hypot(high[0] - low[0], high[1] - low[1], high[2] - low[2]);
+        scale = std::exp2(std::round(std::log2(std::sqrt(cloud.count) / diagonal)));
+    }
+
+    double to(double value, int axis) const { return (value - middle[axis]) * scale; }
+    double from(double value, int axis) const { return value / scale + middle[axis]; }
+};
+
 /// One run of an engine.
 struct Call {
     const lcl_engine_points& points;
@@ -135,6 +160,17 @@ struct Call {
     }
 };
 
+/// The text of a library's exception as part of a sentence: its first line, without the colours of terminals.
+inline std::string plain_text(const char* text) {
+    std::string plain;
+    for (; *text && *text != '\n'; ++text) {
+        if (*text == '\033') text += std::strcspn(text, "m\n");
+        else plain += *text;
+        if (!*text) break;
+    }
+    return plain;
+}
+
 /// The outermost function of an engine: `run` does the work on a Call, and what it throws becomes a status with a sentence.
 template <std::size_t Count, typename Run>
 std::int32_t run_engine(const lcl_engine_points& points, const Option (&table)[Count], const lcl_engine_option* given, std::size_t given_count,
@@ -154,7 +190,7 @@ std::int32_t run_engine(const lcl_engine_points& points, const Option (&table)[C
     } catch (const std::bad_alloc&) {
         return fail(LCL_ENGINE_MEMORY, std::to_string(points.count) + " points are too many for this engine on this machine's memory: take fewer");
     } catch (const std::exception& error) {
-        return fail(LCL_ENGINE_FAILED, std::string("the engine's library failed: ") + error.what());
+        return fail(LCL_ENGINE_FAILED, "the engine's library failed: " + plain_text(error.what()));
     } catch (...) {
         return fail(LCL_ENGINE_FAILED, "the engine's library failed and did not say why");
     }

@@ -25,6 +25,7 @@ namespace {
 
 using limitcl_engine::Call;
 using limitcl_engine::Failure;
+using limitcl_engine::Frame;
 using limitcl_engine::Kind;
 using limitcl_engine::no_limit;
 using limitcl_engine::Option;
@@ -42,34 +43,10 @@ const Option options[] = {
     {"perimeter-bound", "0", Kind::number, 0.0, no_limit, "no triangle has a larger perimeter than this, model units (0: any)"},
     {"outliers", "0", Kind::number, 0.0, 99.0, "percent of the points to leave out: those farthest from their neighbours"},
     {"outlier-distance", "0", Kind::number, 0.0, no_limit,
-     "leave out only points whose neighbours are farther away than so many times the points' mean spacing (0: as `outliers` says alone)"},
+     "leave out only points whose neighbours are so many times farther away than is usual (0: as `outliers` says alone)"},
     {"outlier-neighbours", "24", Kind::whole, 2.0, 1000.0, "how many neighbours that looks at"},
     {"smooth", "0", Kind::whole, 0.0, 1000.0,
      "against noise: each point moves to a quadric through so many neighbours, 6 or more (0: none; later distances are to the points as they were)"}};
-
-/// Positions with the cloud's middle in the origin and a spacing of about one: the front compares radii with constants of its own, and constructs them in
-/// doubles.
-struct Frame {
-    std::array<double, 3> middle;
-    double scale;  ///< a power of two
-
-    explicit Frame(const lcl_engine_points& cloud) {
-        std::array<double, 3> low, high;
-        for (int axis = 0; axis < 3; ++axis) {
-            low[axis] = high[axis] = cloud.points[axis];
-            for (std::int64_t i = 1; i < cloud.count; ++i) {
-                low[axis] = std::min(low[axis], cloud.points[3 * i + axis]);
-                high[axis] = std::max(high[axis], cloud.points[3 * i + axis]);
-            }
-            middle[axis] = low[axis] / 2 + high[axis] / 2;
-        }
-        const double diagonal = std::hypot(high[0] - low[0], high[1] - low[1], high[2] - low[2]);
-        scale = std::exp2(std::round(std::log2(std::sqrt(cloud.count) / diagonal)));
-    }
-
-    Point to(const double* p) const { return {(p[0] - middle[0]) * scale, (p[1] - middle[1]) * scale, (p[2] - middle[2]) * scale}; }
-    double from(const Point& point, int axis) const { return point[axis] / scale + middle[axis]; }
-};
 
 /// Shares of the whole time, roughly, for the progress: measured on clouds of 100k points.
 struct Share {
@@ -94,10 +71,10 @@ void remove_outliers(const Call& call, const std::vector<Point>& points, std::ve
     if (percent == 0.0) percent = 100.0;
     const auto neighbours = static_cast<unsigned>(std::min<std::size_t>(call.options.whole("outlier-neighbours"), kept.size() - 1));
     const auto map = names::point_map(CGAL::make_property_map(points));
-    const double spacing = distance > 0.0 ? CGAL::compute_average_spacing<CGAL::Sequential_tag>(kept, 6, map) : 0.0;
+    const double usual = distance > 0.0 ? CGAL::compute_average_spacing<CGAL::Sequential_tag>(kept, neighbours, map) : 0.0;
     const auto first = CGAL::remove_outliers<CGAL::Sequential_tag>(
         kept, neighbours,
-        callback(call, outlier_share).point_map(CGAL::make_property_map(points)).threshold_percent(percent).threshold_distance(distance * spacing));
+        callback(call, outlier_share).point_map(CGAL::make_property_map(points)).threshold_percent(percent).threshold_distance(distance * usual));
     std::vector<std::int32_t> outliers(first, kept.end());
     std::sort(outliers.begin(), outliers.end());
     call.leave_out(outliers);
@@ -188,7 +165,10 @@ void approximate(const Call& call) {
     const Frame frame(call.points);
     std::vector<Point> points;
     points.reserve(static_cast<std::size_t>(call.points.count));
-    for (std::int64_t i = 0; i < call.points.count; ++i) points.push_back(frame.to(call.points.points + 3 * i));
+    for (std::int64_t i = 0; i < call.points.count; ++i) {
+        const double* p = call.points.points + 3 * i;
+        points.emplace_back(frame.to(p[0], 0), frame.to(p[1], 1), frame.to(p[2], 2));
+    }
     std::vector<std::size_t> kept(points.size());
     std::iota(kept.begin(), kept.end(), std::size_t(0));
     remove_outliers(call, points, kept);
@@ -202,7 +182,7 @@ void approximate(const Call& call) {
     std::vector<double> vertices;
     vertices.reserve(3 * points.size());
     for (const Point& point : points) {
-        for (int axis = 0; axis < 3; ++axis) vertices.push_back(frame.from(point, axis));
+        for (int axis = 0; axis < 3; ++axis) vertices.push_back(frame.from(point[axis], axis));
     }
     call.give(vertices, triangles);
 }
