@@ -31,7 +31,7 @@ void say_cloud(Job& job, lcl_cloud cloud) {
     if (lcl_cloud_has_colours(cloud)) beside.emplace_back("colours");
     const auto count = static_cast<long long>(lcl_cloud_count(cloud));
     job.terminal.say("read", shown_input(job.options) + ": " + counted(count, "point", "points") + (beside.empty() ? "" : " with ") + join(beside, " and "));
-    for (int index = 0; index < lcl_cloud_note_count(cloud); ++index) warn(job, lcl_cloud_note(cloud, index));
+    for (int index = 0; index < lcl_cloud_note_count(cloud); ++index) warn(job, of_input(job, lcl_cloud_note(cloud, index)));
 }
 
 Engine engine_of_options(Job& job) {
