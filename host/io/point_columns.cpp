@@ -107,15 +107,4 @@ void take_columns(PointCloud& cloud, std::vector<double> values, std::size_t wid
     if (left > 0) cloud.warnings.push_back(columns_text(next + 4, left) + (left == 1 ? " was" : " were") + " left out");
 }
 
-void settle_normals(PointCloud& cloud) {
-    const BadRows bad = bad_normals(cloud.normals);
-    if (bad.count == 0) return;
-    if (bad.count == cloud.count()) cloud.warnings.push_back("all normals are zero or not finite; they were left out");
-    else
-        cloud.warnings.push_back(std::to_string(bad.count) + " of the " + std::to_string(cloud.count()) + " normals " + (bad.count == 1 ? "is" : "are") +
-                                 " zero or not finite (the first is that of point " + std::to_string(bad.first[0]) +
-                                 "): all normals were left out, since they are of use only if every point has one");
-    cloud.normals.clear();
-}
-
 }  // namespace lcl

@@ -27,7 +27,4 @@ void take_colours(PointCloud& cloud, std::vector<double> rows, double full = 0);
 /// may have more.
 void take_columns(PointCloud& cloud, std::vector<double> values, std::size_t width, std::size_t columns);
 
-/// Leaves the normals out, with a warning, where one of them is zero or not finite.
-void settle_normals(PointCloud& cloud);
-
 }  // namespace lcl

@@ -924,9 +924,9 @@ LCL_API lcl_status lcl_cloud_create(size_t count, const double* points, size_t s
  * of vertex i), and colours. .xyz: a point a line, x y z [nx ny nz] [r g b]; blanks, commas or semicolons between numbers, as many numbers in every line, # before
  * a comment. Three columns are colours where they hold whole numbers from 0 to 255, one of them above 1, or numbers from 0 to 1 that are no unit vectors; else
  * normals. .pts: the same after a line with the number of points; also x y z intensity r g b. .csv: a header with x, y, z and maybe nx, ny, nz, red, green,
- * blue (any case and order; comma, semicolon or tab). Each also with .gz. What else a file holds is left out, with a note; so are all normals where one is zero
- * or not finite. path "-" is standard input and needs a format. LCL_ERROR_BAD_INPUT names the line or point: not finite, lines that differ in their columns,
- * counts that do not hold. Text takes about 0.1 microseconds a point. */
+ * blue (any case and order; comma, semicolon or tab). Each also with .gz. What else a file holds is left out. A normal that is zero or not finite becomes that
+ * of the nearest point with one; where more than half are so, the cloud has none. Notes tell of both. path "-" is standard input and needs a format.
+ * LCL_ERROR_BAD_INPUT names the line or point: not finite, a line with other columns than the first, a count that does not hold. */
 LCL_API lcl_status lcl_cloud_read(const char* path, lcl_format format, lcl_cloud* cloud);
 /** The same from bytes in memory; `name` stands in messages. */
 LCL_API lcl_status lcl_cloud_read_memory(const void* bytes, size_t size, lcl_format format, const char* name, lcl_cloud* cloud);
