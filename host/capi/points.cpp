@@ -97,6 +97,7 @@ lcl_surface_report report_of(const SurfaceResult& result, double seconds_total) 
     out.rounds = inner.rounds;
     out.iterations = inner.iterations;
     out.converged = inner.converged;
+    out.alpha = inner.alpha;
     out.diagonal = inner.diagonal;
     out.rms = inner.distances.rms;
     out.p95 = inner.distances.p95;

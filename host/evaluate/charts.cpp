@@ -26,6 +26,13 @@ SurfacePlace Charts::surface_place(const ChartPlace& place) const {
     return {face, corner, place.a, place.b};
 }
 
+ChartPlace Charts::chart_place(Index face, Index corner, double u, double v) const {
+    const Index first = topology_.face_offsets[face];
+    if (table_.scheme != Scheme::catmull_clark || topology_.degree(face) != 4) return {first + corner, u, v};
+    if (v <= 0.5) return u <= 0.5 ? ChartPlace{first, 2 * u, 2 * v} : ChartPlace{first + 1, 2 * v, 2 - 2 * u};
+    return u > 0.5 ? ChartPlace{first + 2, 2 - 2 * u, 2 - 2 * v} : ChartPlace{first + 3, 2 - 2 * v, 2 * u};
+}
+
 double Charts::low_a(Index corner) const { return table_.square_beyond(corner, 1) >= 0 ? -1 : 0; }
 double Charts::low_b(Index corner) const { return table_.square_beyond(corner, 0) >= 0 ? -1 : 0; }
 

@@ -33,6 +33,8 @@ public:
     Index count() const { return are_triangles() ? topology_.face_count : topology_.half_edge_count(); }
     ChartPlace place(Index chart, double a, double b) const { return {are_triangles() ? topology_.face_offsets[chart] : chart, a, b}; }
     SurfacePlace surface_place(const ChartPlace& place) const;
+    /// The other way: of a place as limitcl.h has it.
+    ChartPlace chart_place(Index face, Index corner, double u, double v) const;
     /// Goes (da, db) on from a place, into neighbouring charts where that leads across their borders, along the boundary where it would lead outside.
     ChartPlace move(ChartPlace place, double da, double db) const;
     /// Which of the steps -a, -b and (Loop) a + b lead out of the surface here.

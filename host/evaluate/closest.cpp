@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include <Eigen/Dense>
 #include <nanoflann.hpp>
@@ -140,15 +141,13 @@ public:
         batch_.resize(count);
     }
 
-    void run(std::size_t first, const ClosestPoints& out) {
-        find_starts();
-        for (int start = 0; start < start_count && begin(start); ++start) {
-            for (int step = 0; step < most_steps && !active_.empty(); ++step) {
-                evaluate_trials();
-                take_trials();
-                set_trials();
-            }
-            keep_nearest();
+    void run(std::size_t first, const ClosestPoints& out, const Places* places) {
+        if (places != nullptr) {
+            begin_at(first, *places);
+            descend();
+        } else {
+            find_starts();
+            for (int k = 0; k < start_count && begin(k); ++k) descend();
         }
         give(first, out);
     }
@@ -185,14 +184,37 @@ private:
         active_.clear();
         for (std::size_t i = 0; i < starts_.size(); ++i)
             if (k == 0 || promises_more(i, starts_[i][k])) active_.push_back(static_cast<Index>(i));
+        begin_active([&](Index i) { return search_.seeds_->places[starts_[i][k].seed]; });
+        return !active_.empty();
+    }
+
+    void begin_at(std::size_t first, const Places& places) {
+        active_.resize(searches_.size());
+        std::iota(active_.begin(), active_.end(), 0);
+        begin_active([&](Index i) {
+            const std::size_t from = first + static_cast<std::size_t>(i);
+            return search_.charts_.chart_place(places.faces[from], places.corner(from), places.uv[2 * from], places.uv[2 * from + 1]);
+        });
+    }
+
+    template <class PlaceOf>
+    void begin_active(const PlaceOf& place_of) {
         for_each(active_.size(), [&](std::size_t j) {
-            const Index i = active_[j];
-            searches_[i] = Search();
-            searches_[i].best = search_.seeds_->places[starts_[i][k].seed];
-            batch_.set(j, search_.charts_.surface_place(searches_[i].best));
+            Search& search = searches_[active_[j]];
+            search = Search();
+            search.best = place_of(active_[j]);
+            batch_.set(j, search_.charts_.surface_place(search.best));
         });
         begun_ = active_;
-        return !active_.empty();
+    }
+
+    void descend() {
+        for (int step = 0; step < most_steps && !active_.empty(); ++step) {
+            evaluate_trials();
+            take_trials();
+            set_trials();
+        }
+        keep_nearest();
     }
 
     bool promises_more(std::size_t i, const Start& start) const {
@@ -293,10 +315,10 @@ private:
     SamplePiece samples_;
 };
 
-void ClosestSearch::find(const double* points, std::size_t stride, std::size_t count, const ClosestPoints& out) {
+void ClosestSearch::find(const double* points, std::size_t stride, std::size_t count, const ClosestPoints& out, const Places* start) {
     surface_.prepare_for(evaluations_a_point * count);
     for (std::size_t first = 0; first < count; first += DeviceSurface::piece_samples)
-        Piece(*this, points + first * stride, stride, std::min(DeviceSurface::piece_samples, count - first)).run(first, out);
+        Piece(*this, points + first * stride, stride, std::min(DeviceSurface::piece_samples, count - first)).run(first, out, start);
 }
 
 }  // namespace lcl

@@ -24,8 +24,9 @@ public:
     explicit ClosestSearch(DeviceSurface& surface);
     ~ClosestSearch();
 
-    /// points: count rows of three, `stride` values apart, finite.
-    void find(const double* points, std::size_t stride, std::size_t count, const ClosestPoints& out);
+    /// points: count rows of three, `stride` values apart, finite. start: null, or `count` places to begin at instead of the nearest seeds, from which the
+    /// nearest local minimum is found: where the points' closest ones were before the surface moved a little. Its arrays may be those of `out`.
+    void find(const double* points, std::size_t stride, std::size_t count, const ClosestPoints& out, const Places* start = nullptr);
 
 private:
     struct Seeds;

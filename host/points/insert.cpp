@@ -65,8 +65,10 @@ public:
         const Face face = nearest_face(mesh_.face_handle(far.face), p);
         if (is_changed(face)) return false;
         const std::array<HalfEdge, 3> sides = sides_of(mesh_, face);
-        const int side = nearest_side(sides, p);
-        const Vertex vertex = side < 0 ? split_face(face, sides, p) : split_edge(sides[side], p);
+        Vertex vertex;
+        for (const int side : sides_beside(sides, p))
+            if (!vertex.is_valid()) vertex = split_edge(sides[side], p);
+        if (!vertex.is_valid()) vertex = split_face(face, sides, p);
         if (!vertex.is_valid()) return false;
         mesh_.data(vertex).source = far.point;
         make_delaunay(vertex);
@@ -94,17 +96,19 @@ private:
         return squared_distance_to_triangle(p, origin(mesh_, sides[0]), origin(mesh_, sides[1]), origin(mesh_, sides[2]));
     }
 
-    /// The side that the point is next to, -1 where it lies well inside. Outside of the face the side that it lies beyond.
-    int nearest_side(const std::array<HalfEdge, 3>& sides, const Point& p) const {
-        const Point &a = origin(mesh_, sides[0]), &b = origin(mesh_, sides[1]), &c = origin(mesh_, sides[2]);
-        const Point normal = area_vector(a, b, c);
+    /// The sides that the point is next to or lies beyond, the farthest beyond first; none where it lies well inside.
+    std::vector<int> sides_beside(const std::array<HalfEdge, 3>& sides, const Point& p) const {
+        const Point normal = area_vector(origin(mesh_, sides[0]), origin(mesh_, sides[1]), origin(mesh_, sides[2]));
         const double whole = normal.sqrnorm();
-        if (!(whole > 0)) return -1;
-        // The weight of the corner opposite to each side.
-        const std::array<double, 3> weights = {(area_vector(a, b, p) | normal) / whole, (area_vector(b, c, p) | normal) / whole,
-                                               (area_vector(c, a, p) | normal) / whole};
-        const auto least = std::min_element(weights.begin(), weights.end());
-        return *least < edge_weight ? static_cast<int>(least - weights.begin()) : -1;
+        std::vector<std::pair<double, int>> beside;
+        for (int k = 0; k < 3; ++k) {
+            const double weight = (area_vector(origin(mesh_, sides[k]), mesh_.point(mesh_.to_vertex_handle(sides[k])), p) | normal) / whole;
+            if (weight < edge_weight) beside.emplace_back(weight, k);  // the barycentric weight of the corner opposite to this side
+        }
+        std::sort(beside.begin(), beside.end());
+        std::vector<int> order;
+        for (const auto& [weight, side] : beside) order.push_back(side);
+        return order;
     }
 
     Vertex split_face(Face face, const std::array<HalfEdge, 3>& sides, const Point& p) {

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <numeric>
 
 #include "host/evaluate/closest.h"
 #include "host/operator/suitability.h"
@@ -18,6 +19,8 @@ namespace lcl {
 namespace {
 
 constexpr double not_known = std::numeric_limits<double>::quiet_NaN();
+constexpr int changed_rings = 3;
+constexpr double turns_of_normals[] = {60, 90, 175};  // degrees: points that the approximation has left off come last
 constexpr double room_to_insert = 0.8;  // of the vertices that are allowed: where the simplification stops, so that points can be put where they are needed
 
 class Stopwatch {
@@ -154,11 +157,20 @@ private:
         if (control.empty()) return false;
         DeviceSurface surface(context_, build_patch_table(topology, features, scheme_),
                               options_.solve.precision == Precision::single || !context_->device().has_double ? Real::single : Real::full);
-        if (options_.fit == FitKind::least_squares) fit_by_least_squares(surface, control);
-        else measure(surface, control);
+        if (options_.fit == FitKind::least_squares) {
+            fit_by_least_squares(surface, control);
+            keep(mesh, topology, features, std::move(control));
+            return false;
+        }
+        surface.set_points(control.data(), 3);
+        ClosestSearch search(surface);
+        measure(search);
         keep(mesh, topology, features, std::move(control));
         ++report().rounds;
-        return options_.fit == FitKind::interpolate && wants_more();
+        if (wants_more()) return true;
+        if (is_whole_) return false;
+        measure_all(search);  // what is reported holds of all points
+        return wants_more();
     }
 
     /// Empty where the operator has no inverse; the solve's status says why.
@@ -169,6 +181,7 @@ private:
             scheme_.alpha = auto_alpha;
             system = make_limit_system(context_, mesh, topology, features, scheme_, {});
         }
+        report().alpha = scheme_.alpha;
         SolveOptions solve_options = options_.solve;
         solve_options.diagonal = report().diagonal;
         std::vector<double> control = mesh.positions;
@@ -178,18 +191,59 @@ private:
         return is_done ? control : std::vector<double>();
     }
 
-    void measure(DeviceSurface& surface, const std::vector<double>& control) {
+    /// Distances of the points whose part of the mesh has changed; of all where that was all, or where no point seems to be too far.
+    void measure(ClosestSearch& search) {
         const Stopwatch watch(report().seconds_measure);
         tell(SurfacePhase::measure, -1);
-        surface.set_points(control.data(), 3);
-        ClosestSearch search(surface);
-        faces_.resize(measured_.size());
-        distances_.resize(measured_.size());
+        is_whole_ = false;
+        if (measured_vertices_ > 0) measure(search, points_of_changed_faces());
+        if (measured_vertices_ == 0 || report().distances.outside == 0) measure_all(search);
+        measured_vertices_ = mesh_.n_vertices();
+    }
+
+    void measure_all(ClosestSearch& search) {
+        std::vector<Index> all(measured_.size());
+        std::iota(all.begin(), all.end(), 0);
+        faces_.resize(all.size());
+        distances_.resize(all.size());
+        measure(search, all);
+        is_whole_ = true;
+    }
+
+    /// A new vertex moves the surface some rings of faces away, and farther off by less than rounding would show.
+    std::vector<Index> points_of_changed_faces() const {
+        std::vector<std::uint8_t> is_near(mesh_.n_vertices(), 0);
+        std::fill(is_near.begin() + static_cast<std::ptrdiff_t>(measured_vertices_), is_near.end(), 1);
+        for (int ring = 1; ring <= changed_rings; ++ring)
+            for (const OpenMesh::FaceHandle face : mesh_.faces()) {
+                const auto corners = mesh_.fv_range(face);
+                if (std::none_of(corners.begin(), corners.end(), [&](OpenMesh::VertexHandle v) { return is_near[v.idx()] != 0 && is_near[v.idx()] <= ring; }))
+                    continue;
+                for (const OpenMesh::VertexHandle v : corners)
+                    if (is_near[v.idx()] == 0) is_near[v.idx()] = static_cast<std::uint8_t>(ring + 1);
+            }
+        std::vector<Index> places;
+        for (std::size_t i = 0; i < faces_.size(); ++i) {
+            const auto corners = mesh_.fv_range(mesh_.face_handle(faces_[i]));
+            if (std::any_of(corners.begin(), corners.end(), [&](OpenMesh::VertexHandle v) { return is_near[v.idx()] != 0; }))
+                places.push_back(static_cast<Index>(i));
+        }
+        return places;
+    }
+
+    /// places: in points_.
+    void measure(ClosestSearch& search, const std::vector<Index>& places) {
+        std::vector<double> points(3 * places.size()), distances(places.size());
+        std::vector<Index> faces(places.size());
+        for (std::size_t i = 0; i < places.size(); ++i) std::copy_n(&points_[3 * static_cast<std::size_t>(places[i])], 3, &points[3 * i]);
         ClosestPoints found;
-        found.faces = faces_.data();
-        found.distances = distances_.data();
-        search.find(points_.data(), 3, measured_.size(), found);
-        for (double& distance : distances_) distance = std::fabs(distance);
+        found.faces = faces.data();
+        found.distances = distances.data();
+        search.find(points.data(), 3, places.size(), found);
+        for (std::size_t i = 0; i < places.size(); ++i) {
+            faces_[places[i]] = faces[i];
+            distances_[places[i]] = std::fabs(distances[i]);
+        }
         limit_distances_of_vertices();
         report().distances = statistics();
     }
@@ -237,6 +291,7 @@ private:
         report().seconds_solve += fit.seconds_solve;
         report().seconds_measure += fit.seconds_measure;
         report().distances = statistics();
+        report().converged = report().distances.outside == 0;
     }
 
     void keep(const PolygonMesh& mesh, const Topology& topology, const Features& features, std::vector<double> control) {
@@ -248,12 +303,12 @@ private:
             if (features.edge_is_sharp[e] && !topology.is_boundary_edge(e))
                 out_.features.creases.push_back({topology.origin(topology.edge_half_edge[e]), topology.destination(topology.edge_half_edge[e])});
         if (options_.fit == FitKind::interpolate) report().interpolation_error = out_.solve.max_error;
-        report().converged = report().distances.max <= tolerance();
     }
 
     /// Says why there is no further round where the tolerance is not reached.
     bool wants_more() {
         report().message.clear();
+        report().converged = report().distances.outside == 0;
         if (report().converged) return false;
         const std::string far =
             std::to_string(report().distances.outside) + " of " + std::to_string(measured_.size()) + " points are farther from the surface than the tolerance";
@@ -282,12 +337,11 @@ private:
         InsertOptions insert_options;
         insert_options.max_vertices = static_cast<std::size_t>(options_.max_vertices);
         if (options_.crease_angle_degrees > 0) insert_options.feature_degrees = std::min(insert_options.feature_degrees, options_.crease_angle_degrees);
-        std::size_t inserted = insert_points(mesh_, far, distinct_.cloud.points, insert_options);
-        if (inserted == 0) {
-            insert_options.most_turn_degrees = 90;
-            inserted = insert_points(mesh_, far, distinct_.cloud.points, insert_options);
+        for (const double turn : turns_of_normals) {
+            insert_options.most_turn_degrees = turn;
+            if (insert_points(mesh_, far, distinct_.cloud.points, insert_options) > 0) return true;
         }
-        return inserted > 0;
+        return false;
     }
 
     void give_colours() {
@@ -309,8 +363,10 @@ private:
     std::vector<Index> measured_;  // numbers among the distinct points
     std::vector<double> points_;   // the places of these
     FitMesh mesh_;                 // its sources are numbers among the distinct points
-    std::vector<Index> faces_;     // of the closest places
+    std::vector<Index> faces_;     // of the closest places, as far as measured
     std::vector<double> distances_;
+    std::size_t measured_vertices_ = 0;  // of the mesh when they were measured last
+    bool is_whole_ = false;              // the last round measured all points
     SurfaceResult out_;
 };
 

@@ -46,6 +46,7 @@ struct SurfaceReport {
     Index filled_holes = 0, dropped_faces = 0, split_vertices = 0, simplified_vertices = 0;
     Index creases = 0;
     int rounds = 0, iterations = 0;
+    double alpha = 0;  ///< Catmull-Clark: the one in use
     double diagonal = 0;
     FitDistances distances;
     double interpolation_error = std::numeric_limits<double>::quiet_NaN();

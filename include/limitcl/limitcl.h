@@ -990,6 +990,7 @@ typedef struct lcl_surface_report {
     int32_t rounds;                                      /**< solves; least squares: corrections of the parameters */
     int32_t iterations;                                  /**< of all solves */
     int32_t converged;                                   /**< max <= tolerance x diagonal */
+    double alpha;                                        /**< Catmull-Clark: the one in use, after alpha_auto at the first solve */
     double diagonal;                                     /**< of the vertices of the approximation, model units */
     double rms, p95, max;                                /**< distances of the points to the limit surface, model units */
     int64_t outside_count;                               /**< points farther away than the tolerance */
@@ -997,8 +998,11 @@ typedef struct lcl_surface_report {
     double seconds_approximate, seconds_simplify, seconds_solve, seconds_measure, seconds_refine, seconds_total;
     char message[512]; /**< one sentence where the tolerance is not reached; "" otherwise */
 } lcl_surface_report;
-#define LCL_SURFACE_REPORT_INIT \
-    { (uint32_t)sizeof(lcl_surface_report), 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0.0, 0.0, 0.0, 0.0, 0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, "" }
+#define LCL_SURFACE_REPORT_INIT                                                                                                                               \
+    {                                                                                                                                                         \
+        (uint32_t)sizeof(lcl_surface_report), 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0.0, 0.0, 0.0, 0.0, 0.0, 0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, \
+            0.0, ""                                                                                                                                           \
+    }
 
 /** Control mesh of a limit surface through a point cloud (Doo-Sabin paper): the engine makes a polyhedral approximation; it is mended (edges of three faces,
  * vertices where surfaces touch), oriented (closed parts outwards, open ones by the cloud's normals where it has any), its holes are filled on request, and it

@@ -1,0 +1,349 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "host/points/fit_system.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <Eigen/Dense>
+
+#include "host/parallel.h"
+#include "host/points/bending.h"
+#include "host/refine/steps.h"
+
+namespace lcl {
+namespace {
+
+using Eigen::MatrixXd;
+using Points = Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor>;
+using Rows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
+constexpr std::size_t smallest_piece = 256;                  // of patches, and of rows that are made of other rows
+constexpr std::size_t block_entries = std::size_t{1} << 20;  // of the matrices of patches that are held at a time
+constexpr Index sample_block = 64;                           // rows of a patch's samples that are multiplied at a time
+constexpr std::size_t sum_block = 4096;                      // sums are those of blocks, so that threads do not change them
+
+/// Sums of rows, one at a time.
+class RowSum {
+public:
+    explicit RowSum(Index column_count) : place_(static_cast<std::size_t>(column_count), -1) {}
+
+    void add(Index column, double weight) {
+        if (place_[column] < 0) {
+            place_[column] = static_cast<Index>(entries_.size());
+            entries_.emplace_back(column, 0);
+        }
+        entries_[place_[column]].second += weight;
+    }
+    void add_row(const Stencils& rows, Index row, double weight) {
+        for (std::size_t k = rows.offsets[row]; k < rows.offsets[row + 1]; ++k) add(rows.indices[k], weight * rows.weights[k]);
+    }
+    /// Appends the row, its columns in ascending order, and begins the next one.
+    void end(Stencils& rows) {
+        std::sort(entries_.begin(), entries_.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+        for (const auto& [column, weight] : entries_) {
+            rows.indices.push_back(column);
+            rows.weights.push_back(weight);
+            place_[column] = -1;
+        }
+        rows.offsets.push_back(rows.indices.size());
+        entries_.clear();
+    }
+
+private:
+    std::vector<Index> place_;  ///< of each column among the entries, -1 for none
+    std::vector<std::pair<Index, double>> entries_;
+};
+
+/// Rows 0 .. row_count - 1 on all cores: fill(row, sum) adds one's entries.
+template <class Fill>
+Stencils make_rows(Index row_count, Index column_count, const Fill& fill) {
+    const auto count = static_cast<std::size_t>(row_count);
+    const std::size_t pieces = piece_count(count, smallest_piece);
+    std::vector<Stencils> parts(pieces);
+    for_each_piece(count, pieces, [&](std::size_t piece, std::size_t begin, std::size_t end) {
+        RowSum sum(column_count);
+        for (std::size_t row = begin; row < end; ++row) {
+            fill(static_cast<Index>(row), sum);
+            sum.end(parts[piece]);
+        }
+    });
+    Stencils all = std::move(parts.front());
+    for (std::size_t piece = 1; piece < pieces; ++piece) {
+        const Stencils part = std::move(parts[piece]);
+        const std::size_t first = all.indices.size();
+        for (std::size_t i = 1; i < part.offsets.size(); ++i) all.offsets.push_back(first + part.offsets[i]);
+        all.indices.insert(all.indices.end(), part.indices.begin(), part.indices.end());
+        all.weights.insert(all.weights.end(), part.weights.begin(), part.weights.end());
+    }
+    return all;
+}
+
+Index row_count(const Stencils& rows) { return static_cast<Index>(rows.offsets.size()) - 1; }
+
+Stencils product(const Stencils& outer, const Stencils& inner, Index column_count) {
+    return make_rows(row_count(outer), column_count, [&](Index row, RowSum& sum) {
+        for (std::size_t k = outer.offsets[row]; k < outer.offsets[row + 1]; ++k) sum.add_row(inner, outer.indices[k], outer.weights[k]);
+    });
+}
+
+Stencils rows_of(const RefinerStep& step) {
+    const StepInput input{step.topology, step.features, step.options};
+    const std::optional<DooSabinLayout> layout = layout_of(input);
+    StencilRows rows(step.topology, static_cast<std::size_t>(step.vertex_count));
+    write_all_rows(input, pointer_to(layout), rows);
+    return rows.take();
+}
+
+/// The control points of patches, refined ones and ghosts, over the mesh's points.
+Stencils control_rows(const PatchTable& table) {
+    Stencils rows;
+    for (const RefinerStep& step : table.refiner->steps()) rows = row_count(rows) == 0 ? rows_of(step) : product(rows_of(step), rows, table.point_count);
+    const Stencils ghosts = product(table.ghosts, rows, table.point_count);
+    const std::size_t first = rows.indices.size();
+    for (std::size_t i = 1; i < ghosts.offsets.size(); ++i) rows.offsets.push_back(first + ghosts.offsets[i]);
+    rows.indices.insert(rows.indices.end(), ghosts.indices.begin(), ghosts.indices.end());
+    rows.weights.insert(rows.weights.end(), ghosts.weights.begin(), ghosts.weights.end());
+    return rows;
+}
+
+double dot(const std::vector<double>& a, const std::vector<double>& b) {
+    std::vector<double> sums((a.size() + sum_block - 1) / sum_block);
+    parallel_for_each(
+        sums.size(),
+        [&](std::size_t i) {
+            const std::size_t begin = i * sum_block, size = std::min(sum_block, a.size() - begin);
+            sums[i] = Eigen::Map<const Eigen::VectorXd>(&a[begin], size).dot(Eigen::Map<const Eigen::VectorXd>(&b[begin], size));
+        },
+        8);
+    double sum = 0;
+    for (const double part : sums) sum += part;
+    return sum;
+}
+
+/// Samples sorted by patch.
+struct SortedSamples {
+    std::vector<PatchPlace> places;
+    std::vector<std::size_t> order;   ///< the samples of patch p stand at starts[p] .. starts[p + 1] - 1
+    std::vector<std::size_t> starts;  ///< patch_count + 1
+    std::vector<Index> patches;       ///< those with samples
+};
+
+SortedSamples sort_samples(const PatchTable& table, const Places& places) {
+    SortedSamples samples;
+    samples.places.resize(places.count);
+    parallel_for(places.count, [&](std::size_t begin, std::size_t end) { locate(table, places, begin, end, &samples.places[begin]); });
+    samples.starts.assign(static_cast<std::size_t>(table.patch_count()) + 1, 0);
+    for (const PatchPlace& place : samples.places) ++samples.starts[place.patch + 1];
+    for (Index patch = 0; patch < table.patch_count(); ++patch) {
+        if (samples.starts[patch + 1] > 0) samples.patches.push_back(patch);
+        samples.starts[patch + 1] += samples.starts[patch];
+    }
+    std::vector<std::size_t> next = samples.starts;
+    samples.order.resize(places.count);
+    for (std::size_t i = 0; i < places.count; ++i) samples.order[next[samples.places[i].patch]++] = i;
+    return samples;
+}
+
+}  // namespace
+
+/// What one patch adds to N and B.
+struct FitSystem::LocalSystem {
+    std::vector<Index> vertices;  ///< in ascending order
+    MatrixXd normal;
+    Points right;  ///< no rows: nothing
+};
+
+/// A patch's control points over the vertices that they depend on.
+class FitSystem::LocalRows {
+public:
+    explicit LocalRows(const FitSystem& system) : system_(system), place_(static_cast<std::size_t>(system.table_.point_count), -1) {}
+
+    const MatrixXd& transfer() const { return transfer_; }  ///< K x vertices
+
+    void find_vertices(Index patch, std::vector<Index>& vertices) {
+        vertices.clear();
+        for_each_entry(patch, [&](Index, Index vertex, double) {
+            if (place_[vertex] >= 0) return;
+            place_[vertex] = 0;
+            vertices.push_back(vertex);
+        });
+        std::sort(vertices.begin(), vertices.end());
+        for (const Index vertex : vertices) place_[vertex] = -1;
+    }
+
+    void set(Index patch, std::vector<Index>& vertices) {
+        find_vertices(patch, vertices);
+        for (std::size_t j = 0; j < vertices.size(); ++j) place_[vertices[j]] = static_cast<Index>(j);
+        transfer_.setZero(system_.patch_rows_.point_count(patch), static_cast<Index>(vertices.size()));
+        for_each_entry(patch, [&](Index i, Index vertex, double weight) { transfer_(i, place_[vertex]) = weight; });
+        for (const Index vertex : vertices) place_[vertex] = -1;
+    }
+
+private:
+    template <class Visit>
+    void for_each_entry(Index patch, const Visit& visit) const {
+        const PatchTable& table = system_.table_;
+        const Stencils& rows = system_.rows_;
+        for (Index c = table.patch_begin[patch]; c < table.patch_begin[patch + 1]; ++c)
+            for (std::size_t k = rows.offsets[table.control[c]]; k < rows.offsets[table.control[c] + 1]; ++k)
+                visit(c - table.patch_begin[patch], rows.indices[k], rows.weights[k]);
+    }
+
+    const FitSystem& system_;
+    std::vector<Index> place_;  ///< of vertices among those of the patch, -1 for none
+    MatrixXd transfer_;
+};
+
+FitSystem::FitSystem(const PatchTable& table, double fair) : table_(table), patch_rows_(table), fair_(fair), rows_(control_rows(table)) {
+    find_pattern();
+    right_.resize(3 * static_cast<std::size_t>(table.point_count));
+    if (fair > 0) set_energy();
+}
+
+/// Two vertices are coupled where they share a patch.
+void FitSystem::find_pattern() {
+    std::vector<std::vector<Index>> patches_of(static_cast<std::size_t>(table_.point_count));
+    LocalRows local(*this);
+    std::vector<Index> vertices;
+    for (Index patch = 0; patch < table_.patch_count(); ++patch) {
+        local.find_vertices(patch, vertices);
+        for (const Index vertex : vertices) patches_of[vertex].push_back(patch);
+    }
+    normal_ = make_rows(table_.point_count, table_.point_count, [&](Index vertex, RowSum& sum) {
+        for (const Index patch : patches_of[vertex])
+            for (Index c = table_.patch_begin[patch]; c < table_.patch_begin[patch + 1]; ++c) sum.add_row(rows_, table_.control[c], 0);
+    });
+}
+
+/// Patches are squares (Loop: triangles) of side 2^-levels of an edge, so second derivatives by edges are 4^levels times those by patches.
+void FitSystem::set_energy() {
+    const double factor = std::ldexp(1.0, 4 * table_.levels()) / table_.patch_count();
+    const MatrixXd regular = factor * regular_bending(table_.scheme);
+    std::vector<MatrixXd> irregular;
+    for (const PatchKind& kind : table_.kinds) irregular.push_back(factor * irregular_bending(table_.scheme, kind));
+    std::vector<Index> patches(static_cast<std::size_t>(table_.patch_count()));
+    for (std::size_t i = 0; i < patches.size(); ++i) patches[i] = static_cast<Index>(i);
+    add(patches, [&](Index patch, LocalRows& rows, LocalSystem& out) {
+        rows.set(patch, out.vertices);
+        const MatrixXd& bending = table_.kind[patch] < 0 ? regular : irregular[table_.kind[patch]];
+        out.normal.noalias() = rows.transfer().transpose() * (bending * rows.transfer());
+    });
+    energy_ = normal_.weights;
+}
+
+void FitSystem::set_samples(const Places& places, const double* points, const std::array<double, 3>& origin) {
+    const Eigen::RowVector3d centre(origin[0], origin[1], origin[2]);
+    const SortedSamples samples = sort_samples(table_, places);
+    for (std::size_t k = 0; k < normal_.weights.size(); ++k) normal_.weights[k] = energy_.empty() ? 0 : fair_ * energy_[k];
+    std::fill(right_.begin(), right_.end(), 0.0);
+    const double factor = 1 / static_cast<double>(places.count);
+    add(samples.patches, [&](Index patch, LocalRows& local, LocalSystem& out) {
+        local.set(patch, out.vertices);
+        const auto size = static_cast<Index>(out.vertices.size());
+        out.normal.setZero(size, size);
+        out.right.setZero(size, 3);
+        for (std::size_t first = samples.starts[patch]; first < samples.starts[patch + 1]; first += sample_block) {
+            const Index count = static_cast<Index>(std::min<std::size_t>(sample_block, samples.starts[patch + 1] - first));
+            Rows weights(count, patch_rows_.point_count(patch));
+            Points targets(count, 3);
+            for (Index i = 0; i < count; ++i) {
+                const std::size_t sample = samples.order[first + i];
+                patch_rows_.write(samples.places[sample], 1, weights.row(i).data());
+                targets.row(i) = Eigen::Map<const Eigen::RowVector3d>(points + 3 * sample) - centre;
+            }
+            const MatrixXd rows = weights * local.transfer();
+            out.normal.noalias() += factor * rows.transpose() * rows;
+            out.right.noalias() += factor * rows.transpose() * targets;
+        }
+    });
+}
+
+/// What patches add to N and B, in their order, so that sums do not depend on threads: block by block, first the patches' own matrices, then their sum.
+template <class Make>
+void FitSystem::add(const std::vector<Index>& patches, const Make& make) {
+    std::vector<LocalRows> workers;
+    std::vector<LocalSystem> systems;
+    for (std::size_t first = 0; first < patches.size(); first += systems.size()) {
+        std::size_t count = 0, entries = 0;
+        for (; first + count < patches.size() && entries < block_entries; ++count) {
+            const auto points = static_cast<std::size_t>(patch_rows_.point_count(patches[first + count]));
+            entries += points * points;
+        }
+        systems.resize(count);
+        const std::size_t pieces = piece_count(count, smallest_piece);
+        while (workers.size() < pieces) workers.emplace_back(*this);
+        for_each_piece(count, pieces, [&](std::size_t piece, std::size_t begin, std::size_t end) {
+            for (std::size_t i = begin; i < end; ++i) make(patches[first + i], workers[piece], systems[i]);
+        });
+        scatter(systems);
+    }
+}
+
+/// Each thread has its own rows of N and goes through all systems.
+void FitSystem::scatter(const std::vector<LocalSystem>& systems) {
+    const auto add_row = [&](const LocalSystem& local, Index i) {
+        const Index row = local.vertices[i];
+        std::size_t to = normal_.offsets[row];
+        for (std::size_t j = 0; j < local.vertices.size(); ++j, ++to) {
+            while (normal_.indices[to] != local.vertices[j]) ++to;
+            normal_.weights[to] += local.normal(static_cast<Index>(j), i);
+        }
+        for (Index c = 0; c < 3 && local.right.rows() > 0; ++c) right_[3 * static_cast<std::size_t>(row) + c] += local.right(i, c);
+    };
+    parallel_for(
+        static_cast<std::size_t>(table_.point_count),
+        [&](std::size_t begin, std::size_t end) {
+            for (const LocalSystem& local : systems) {
+                auto at = std::lower_bound(local.vertices.begin(), local.vertices.end(), static_cast<Index>(begin));
+                for (; at != local.vertices.end() && *at < static_cast<Index>(end); ++at) add_row(local, static_cast<Index>(at - local.vertices.begin()));
+            }
+        },
+        smallest_piece);
+}
+
+void FitSystem::multiply(const std::vector<double>& values, const std::vector<double>& x, std::vector<double>& y) const {
+    y.resize(x.size());
+    parallel_for_each(
+        table_.point_count,
+        [&](Index row) {
+            double sum[3] = {0, 0, 0};
+            for (std::size_t k = normal_.offsets[row]; k < normal_.offsets[row + 1]; ++k)
+                for (std::size_t c = 0; c < 3; ++c) sum[c] += values[k] * x[3 * static_cast<std::size_t>(normal_.indices[k]) + c];
+            std::copy_n(sum, 3, &y[3 * static_cast<std::size_t>(row)]);
+        },
+        smallest_parallel_piece / 16);
+}
+
+int FitSystem::solve(std::vector<double>& control, double tolerance, int most_iterations) const {
+    std::vector<double> inverse(control.size(), 0.0), residual, conditioned(control.size()), direction(control.size(), 0.0), product;
+    for (Index row = 0; row < table_.point_count; ++row)
+        for (std::size_t k = normal_.offsets[row]; k < normal_.offsets[row + 1]; ++k)
+            if (normal_.indices[k] == row && normal_.weights[k] > 0) std::fill_n(&inverse[3 * static_cast<std::size_t>(row)], 3, 1 / normal_.weights[k]);
+    multiply(normal_.weights, control, residual);
+    for (std::size_t i = 0; i < residual.size(); ++i) residual[i] = right_[i] - residual[i];
+    double first = -1, before = 0;
+    for (int iteration = 0;; ++iteration) {
+        for (std::size_t i = 0; i < residual.size(); ++i) conditioned[i] = inverse[i] * residual[i];
+        const double now = dot(residual, conditioned);
+        if (first < 0) first = now;
+        if (iteration == most_iterations || !(now > tolerance * tolerance * first)) return iteration;
+        for (std::size_t i = 0; i < residual.size(); ++i) direction[i] = conditioned[i] + (iteration > 0 ? now / before : 0) * direction[i];
+        before = now;
+        multiply(normal_.weights, direction, product);
+        const double curvature = dot(direction, product);
+        if (!(curvature > 0)) return iteration;  // rounding: what is left lies in the null space
+        for (std::size_t i = 0; i < residual.size(); ++i) {
+            control[i] += now / curvature * direction[i];
+            residual[i] -= now / curvature * product[i];
+        }
+    }
+}
+
+double FitSystem::energy(const std::vector<double>& control) const {
+    if (energy_.empty()) return 0;
+    std::vector<double> product;
+    multiply(energy_, control, product);
+    return dot(control, product);
+}
+
+}  // namespace lcl
