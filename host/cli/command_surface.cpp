@@ -166,6 +166,13 @@ void say_fit(Job& job, const Engine& engine) {
                                    short_number(fit.seconds_refine) + " seconds");
 }
 
+/// The one that --alpha auto chose: whoever reads OUT has to say it.
+void note_alpha(Job& job, lcl_scheme_options scheme, double alpha) {
+    scheme.alpha_auto = 0;
+    scheme.alpha = alpha;
+    note_scheme(job, scheme);
+}
+
 Failure failure_of_fit(lcl_status status, const lcl_surface_report& report) {
     Failure failure = failure_of(status);
     if (report.message[0] != '\0') failure.message = one_line(report.message);
@@ -180,8 +187,8 @@ void run_surface(Job& job) {
     say_cloud(job, cloud.get());
     const Engine engine = engine_of_options(job);
     note_parameters(job, engine);
-    lcl_scheme_options scheme = scheme_of_options(job);
-    Context context = device.finish();
+    const lcl_scheme_options scheme = scheme_of_options(job);
+    const Context context = device.finish();
     say_scheme(job);
 
     const Fitted fitted = fit_surface(job, context.get(), cloud.get(), engine, scheme);
@@ -189,10 +196,10 @@ void run_surface(Job& job) {
     std::optional<Failure> failure;
     if (fitted.status != LCL_OK) failure = failure_of_fit(fitted.status, report);
     if (fitted.mesh) {
+        note_alpha(job, scheme, report.alpha);
         job.report.mesh = summary_of(fitted.mesh.get());
         warn_of_notes(job, fitted.mesh.get());
         say_fit(job, engine);
-        resolve_alpha(job, context, fitted.mesh.get(), scheme);  // of this mesh, as whoever reads OUT has to say it
     }
     if (!failure && !report.converged) warn(job, report.message);
     if (failure && !(job.options.keep_going && fitted.mesh)) throw *failure;

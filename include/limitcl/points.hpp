@@ -146,6 +146,8 @@ struct FitReport {
     std::int64_t unused = 0;           ///< measured points that are no vertex of the approximation
     int vertices = 0, faces = 0;       ///< of the control mesh
     int creases = 0;                   ///< of the control mesh
+    double alpha = 0;                  ///< Catmull-Clark: the one in use
+                                       ///< of the control mesh
     int rounds = 0, iterations = 0;    ///< solves, and iterations of all of them
     double interpolation_error = 0;    ///< largest |limit point - vertex|; NaN for least squares
     int approximation_vertices = 0;    ///< what the engine gave, mended
@@ -349,6 +351,7 @@ inline FitReport detail::FitCall::finish(lcl_status status) const {
     report.vertices = report_.vertices;
     report.faces = report_.faces;
     report.creases = report_.creases;
+    report.alpha = report_.alpha;
     report.rounds = report_.rounds;
     report.iterations = report_.iterations;
     report.interpolation_error = report_.interpolation_error;
