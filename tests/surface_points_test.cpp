@@ -71,12 +71,12 @@ double largest_error(lcl_mesh mesh, const shapes::SampledShape& truth, lcl_schem
     const lcl_scheme_options options = scheme(which);
     lcl_refine_options refine = LCL_REFINE_OPTIONS_INIT;
     refine.levels = 2;
-    refine.limit = 1;
     lcl_mesh refined = nullptr;
     succeed(lcl_mesh_refine(mesh, &options, &refine, &refined));
     const Mesh owner(refined);
     std::vector<double> points(3 * static_cast<std::size_t>(lcl_mesh_vertex_count(refined)));
     succeed(lcl_mesh_get_points(refined, points.data(), 0));
+    succeed(lcl_limit_points(make_operator(default_context(), refined, &options).get(), points.data(), 0, 3, LCL_PRECISION_DOUBLE, points.data(), 0));
     double largest = 0;
     for (std::size_t i = 0; i < points.size(); i += 3) largest = std::max(largest, std::fabs(truth.distance({points[i], points[i + 1], points[i + 2]})));
     return largest;
@@ -303,22 +303,28 @@ TEST_CASE("an engine's own vertices and colours of the cloud", "[points]") {
     shapes::KnownEngine engine(shapes::sphere_cloud(2).shape);
     engine.own_points = shapes::sphere_cloud(2).shape.mesh.positions;
     for (double& value : engine.own_points) value *= 0.999;
-    lcl_cloud_s colourful;
-    colourful.cloud.points = cloud.shape.mesh.positions;
-    for (std::size_t i = 0; i < colourful.cloud.count(); ++i)
-        colourful.cloud.colours.insert(colourful.cloud.colours.end(), {cloud.shape.mesh.positions[3 * i] > 0 ? 1.0 : 0.0, 0.5, 0.0});
+    std::string text;  // as a file has them: coordinates and colours
+    for (const shapes::Point& p : shapes::points_of(cloud.shape.mesh)) {
+        for (const double coordinate : p) text += std::to_string(coordinate) + " ";
+        text += p[0] > 0 ? "255 128 0\n" : "0 128 0\n";
+    }
+    lcl_cloud colourful = nullptr;
+    succeed(lcl_cloud_read_memory(text.data(), text.size(), LCL_FORMAT_XYZ, "colourful", &colourful));
+    const Cloud owner(colourful);
     const lcl_surface_options options = tolerance(3e-3);
     lcl_mesh handle = nullptr;
     lcl_surface_report report = LCL_SURFACE_REPORT_INIT;
-    succeed(lcl_surface(default_context(), &colourful, &engine.engine(), nullptr, &options, &handle, &report));
+    succeed(lcl_surface(default_context(), colourful, &engine.engine(), nullptr, &options, &handle, &report));
     const Mesh mesh(handle);
     CHECK(report.max <= 3e-3 * report.diagonal);
     REQUIRE(lcl_mesh_property_count(handle) == 3);
     std::vector<double> red(static_cast<std::size_t>(report.vertices)), points(3 * red.size());
     succeed(lcl_mesh_get_property(handle, 0, red.data()));
     succeed(lcl_mesh_get_points(handle, points.data(), 0));
+    const double red_of_full = *std::max_element(red.begin(), red.end());
+    CHECK(red_of_full > 0);
     for (std::size_t v = 0; v < red.size(); ++v)
-        if (std::fabs(points[3 * v]) > 0.1) CHECK(red[v] == (points[3 * v] > 0 ? 1.0 : 0.0));
+        if (std::fabs(points[3 * v]) > 0.2) CHECK(red[v] == (points[3 * v] > 0 ? red_of_full : 0.0));
 }
 
 TEST_CASE("least squares see through noise that interpolation follows", "[points]") {

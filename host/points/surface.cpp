@@ -20,7 +20,8 @@ namespace {
 
 constexpr double not_known = std::numeric_limits<double>::quiet_NaN();
 constexpr int changed_rings = 3;
-constexpr double turns_of_normals[] = {60, 90, 175};  // degrees: points that the approximation has left off come last
+constexpr double worth_a_vertex = 0.1;                                         // of the tolerance
+constexpr double usual_turn = 90, turns_of_normals[] = {60, usual_turn, 175};  // degrees: points that the approximation has left off come last
 constexpr double room_to_insert = 0.8;  // of the vertices that are allowed: where the simplification stops, so that points can be put where they are needed
 
 class Stopwatch {
@@ -47,6 +48,9 @@ public:
         make_fit_mesh();
         simplify_mesh();
         while (fit_round()) continue;
+        if (sharply_inserted_ > 0)
+            out_.warnings.push_back("points became vertices where the surface has to turn by more than 90 degrees to meet them: " +
+                                    std::to_string(sharply_inserted_) + "; if they are outliers, the engine's options can leave them out");
         give_colours();
         return std::move(out_);
     }
@@ -292,6 +296,9 @@ private:
         report().seconds_measure += fit.seconds_measure;
         report().distances = statistics();
         report().converged = report().distances.outside == 0;
+        if (!report().converged)
+            report().message = far_points() + ": a least-squares fit keeps its " + std::to_string(mesh_.n_vertices()) +
+                               " vertices; raise the tolerance, lower W, or give a larger number of vertices";
     }
 
     void keep(const PolygonMesh& mesh, const Topology& topology, const Features& features, std::vector<double> control) {
@@ -303,6 +310,11 @@ private:
             if (features.edge_is_sharp[e] && !topology.is_boundary_edge(e))
                 out_.features.creases.push_back({topology.origin(topology.edge_half_edge[e]), topology.destination(topology.edge_half_edge[e])});
         if (options_.fit == FitKind::interpolate) report().interpolation_error = out_.solve.max_error;
+    }
+
+    std::string far_points() {
+        return std::to_string(report().distances.outside) + " of " + std::to_string(measured_.size()) +
+               " points are farther from the surface than the tolerance";
     }
 
     /// Says why there is no further round where the tolerance is not reached.
@@ -328,20 +340,33 @@ private:
         return false;
     }
 
+    /// Points that are too far become vertices; where none of them can, others of the faces that they are nearest to.
     bool insert() {
         const Stopwatch watch(report().seconds_refine);
         tell(SurfacePhase::refine, -1);
-        std::vector<FarPoint> far;
+        std::vector<std::uint8_t> is_far(mesh_.n_faces(), 0);
+        std::vector<FarPoint> far, beside;
         for (std::size_t i = 0; i < measured_.size(); ++i)
-            if (distances_[i] > tolerance()) far.push_back({measured_[i], faces_[i], distances_[i]});
+            if (distances_[i] > tolerance()) {
+                far.push_back({measured_[i], faces_[i], distances_[i]});
+                is_far[faces_[i]] = 1;
+            }
+        for (const double turn : turns_of_normals) {
+            const std::size_t inserted = insert(far, turn);
+            if (turn > usual_turn) sharply_inserted_ += inserted;
+            if (inserted > 0) return true;
+        }
+        for (std::size_t i = 0; i < measured_.size(); ++i)
+            if (is_far[faces_[i]] && distances_[i] > worth_a_vertex * tolerance()) beside.push_back({measured_[i], faces_[i], distances_[i]});
+        return insert(beside, usual_turn) > 0;
+    }
+
+    std::size_t insert(const std::vector<FarPoint>& far, double most_turn) {
         InsertOptions insert_options;
+        insert_options.most_turn_degrees = most_turn;
         insert_options.max_vertices = static_cast<std::size_t>(options_.max_vertices);
         if (options_.crease_angle_degrees > 0) insert_options.feature_degrees = std::min(insert_options.feature_degrees, options_.crease_angle_degrees);
-        for (const double turn : turns_of_normals) {
-            insert_options.most_turn_degrees = turn;
-            if (insert_points(mesh_, far, distinct_.cloud.points, insert_options) > 0) return true;
-        }
-        return false;
+        return insert_points(mesh_, far, distinct_.cloud.points, insert_options);
     }
 
     void give_colours() {
@@ -366,6 +391,7 @@ private:
     std::vector<Index> faces_;     // of the closest places, as far as measured
     std::vector<double> distances_;
     std::size_t measured_vertices_ = 0;  // of the mesh when they were measured last
+    std::size_t sharply_inserted_ = 0;   // points that a normal turned by more than 90 degrees for
     bool is_whole_ = false;              // the last round measured all points
     SurfaceResult out_;
 };
