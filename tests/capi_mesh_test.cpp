@@ -456,16 +456,16 @@ TEST_CASE("files and formats that cannot be served are refused with the right st
     const Mesh mesh = make_mesh(shapes::cube());
     lcl_mesh raw = nullptr;
     lcl_format format = LCL_FORMAT_BY_ENDING;
-    const auto bad_format = static_cast<lcl_format>(6);
+    const auto bad_format = static_cast<lcl_format>(9);
     refuse(lcl_mesh_read(folder.file("none.obj").c_str(), LCL_FORMAT_BY_ENDING, &raw), LCL_ERROR_FILE, "none.obj");
     refuse(lcl_mesh_read("x.doc", LCL_FORMAT_BY_ENDING, &raw), LCL_ERROR_INVALID_ARGUMENT, "names no mesh format");
     refuse(lcl_mesh_read("-", LCL_FORMAT_BY_ENDING, &raw), LCL_ERROR_INVALID_ARGUMENT, "need a format");
-    refuse(lcl_mesh_read("x.obj", bad_format, &raw), LCL_ERROR_INVALID_ARGUMENT, "format is 6");
+    refuse(lcl_mesh_read("x.obj", bad_format, &raw), LCL_ERROR_INVALID_ARGUMENT, "format is 9");
     refuse(lcl_mesh_read("x.obj", static_cast<lcl_format>(-1), &raw), LCL_ERROR_INVALID_ARGUMENT, "format is -1");
     refuse(lcl_mesh_read_memory("v 0 0", 5, LCL_FORMAT_OBJ, "five bytes", &raw), LCL_ERROR_BAD_INPUT, "five bytes");
-    refuse(lcl_mesh_read_memory("v 0 0", 5, bad_format, "x", &raw), LCL_ERROR_INVALID_ARGUMENT, "format is 6");
+    refuse(lcl_mesh_read_memory("v 0 0", 5, bad_format, "x", &raw), LCL_ERROR_INVALID_ARGUMENT, "format is 9");
     refuse(lcl_mesh_write(mesh.get(), folder.file("no/such/folder.obj").c_str(), LCL_FORMAT_BY_ENDING), LCL_ERROR_WRITE, "folder.obj");
-    refuse(lcl_mesh_write(mesh.get(), folder.file("x.obj").c_str(), bad_format), LCL_ERROR_INVALID_ARGUMENT, "format is 6");
+    refuse(lcl_mesh_write(mesh.get(), folder.file("x.obj").c_str(), bad_format), LCL_ERROR_INVALID_ARGUMENT, "format is 9");
     refuse(lcl_mesh_write(mesh.get(), folder.file("x.stl").c_str(), LCL_FORMAT_BY_ENDING), LCL_ERROR_INVALID_ARGUMENT,
            "STL holds triangles only; face 0 has 4");
     CHECK_FALSE(std::filesystem::exists(folder.file("x.stl")));

@@ -9,6 +9,11 @@ Precision inner_precision(lcl_precision precision) {
     return static_cast<Precision>(precision);
 }
 
+FileFormat inner_format(lcl_format format) {
+    if (format < LCL_FORMAT_BY_ENDING || format > LCL_FORMAT_PTS) throw InvalidArgument("format is " + std::to_string(format) + ", it goes from 0 to 8");
+    return static_cast<FileFormat>(format);
+}
+
 void check_channels(int32_t channels, std::size_t stride, const char* name) {
     if (channels < 1) throw InvalidArgument("channels is " + std::to_string(channels) + ", it is at least 1");
     if (stride < static_cast<std::size_t>(channels))

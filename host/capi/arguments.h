@@ -11,6 +11,7 @@
 namespace lcl {
 
 Precision inner_precision(lcl_precision precision);
+FileFormat inner_format(lcl_format format);
 
 /// At least one channel, and rows that hold them.
 void check_channels(int32_t channels, std::size_t stride, const char* name);

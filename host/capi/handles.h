@@ -13,6 +13,7 @@
 #include "host/capi/guard.h"
 #include "host/field/field.h"
 #include "host/io/mesh_file.h"
+#include "host/mesh/point_cloud.h"
 #include "host/refine/device_refiner.h"
 #include "host/refine/refiner.h"
 #include "host/solve/local.h"
@@ -106,6 +107,10 @@ private:
     std::optional<lcl::Topology> topology_;
     std::optional<lcl::Features> features_;
     std::optional<std::vector<lcl::Defect>> defects_;
+};
+
+struct lcl_cloud_s : lcl::Counted {
+    lcl::PointCloud cloud;
 };
 
 struct lcl_operator_s : lcl::Counted {

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <numeric>
 
-#include "host/capi/handles.h"
+#include "host/capi/arguments.h"
 #include "host/parallel.h"
 
 using namespace lcl;
@@ -114,11 +114,6 @@ lcl_mesh adopt_with_normals(MeshFile file) {
     lcl_mesh const mesh = adopt(std::move(file));
     mesh->was_read_with_normals = true;
     return mesh;
-}
-
-FileFormat inner_format(lcl_format format) {
-    if (format < LCL_FORMAT_BY_ENDING || format > LCL_FORMAT_OM) throw InvalidArgument("format is " + std::to_string(format) + ", it goes from 0 to 5");
-    return static_cast<FileFormat>(format);
 }
 
 /// The tags that make a reader find the same features: creases however they were found, marked corners, the boundary rule where it is not the default.

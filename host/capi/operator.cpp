@@ -10,8 +10,6 @@ using namespace lcl;
 namespace lcl {
 namespace {
 
-constexpr double auto_alpha = 0.5;  // the mesh expansion paper's choice
-
 void check_ratio(double value, const std::string& name) {
     if (!(value >= 0 && value <= 1)) throw InvalidArgument(name + " is " + std::to_string(value) + ", it goes from 0 to 1");
 }
@@ -27,11 +25,6 @@ Scheme resolve(const lcl_mesh_s& mesh, const lcl_scheme_options& options) {
     for (Index f = 0; f < mesh.file.mesh.face_count(); ++f)
         if (mesh.file.mesh.degree(f) != 3) return Scheme::catmull_clark;
     return Scheme::loop;
-}
-
-bool wants_other_alpha(LimitSystem& system) {
-    const Spectrum& spectrum = spectrum_of(system);
-    return spectrum.singular || spectrum.indefinite || spectrum.smooth < near_singular;
 }
 
 }  // namespace

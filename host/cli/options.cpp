@@ -14,10 +14,12 @@
 
 #include <CLI/CLI.hpp>
 
+#include "host/cli/engine_library.h"
 #include "host/cli/failure.h"
 #include "host/cli/option_names.h"
 #include "host/cli/option_rules.h"
 #include "host/cli/option_values.h"
+#include "host/cli/terminal.h"
 
 namespace lcl::cli {
 
@@ -131,7 +133,7 @@ public:
         : options_(options), app_("Control meshes whose subdivision limit surface passes exactly through given vertices.", "limitcl") {
         app_.fallthrough();  // before the commands are added, which inherit it: options may stand before or after the command's name
         app_.require_subcommand(0, 1);
-        app_.set_version_flag("--version", version_text, "Version, build, OpenCL platforms, file formats");
+        app_.set_version_flag("--version", version_text, "Version, build, OpenCL platforms, file formats, engines of point clouds");
         app_.get_formatter()->label("SUBCOMMAND", "COMMAND");  // before the commands are added, which share the formatter
         app_.get_formatter()->label("REQUIRED", "");
         app_.footer("Every option of a command: limitcl COMMAND --help");
@@ -171,6 +173,16 @@ private:
     CLI::App app_;
 };
 
+/// What `surface` can make its approximation with.
+std::string engine_text() {
+    std::vector<std::string> lines, warnings;
+    for (const Engine& engine : installed_engines(warnings))
+        lines.push_back("engine: " + engine.name + " (" + engine.description + ", " + engine.licence + ")");
+    if (lines.empty()) lines.push_back("engines: none");
+    for (const std::string& warning : warnings) lines.push_back("warning: " + warning);
+    return join(lines, "\n");
+}
+
 std::string Parser::version_text() {
     std::string text =
         std::string("limitcl ") + lcl_version_string() + "\n" + lcl_build_string() + "\nfile formats: .obj .off .ply .stl .om, each also with .gz\n";
@@ -179,10 +191,9 @@ std::string Parser::version_text() {
         lcl_device_info info = LCL_DEVICE_INFO_INIT;
         if (lcl_device_get_info(index, &info) == LCL_OK) platforms.insert(std::string(info.platform) + " (" + info.version + ")");
     }
-    if (platforms.empty()) return text + "OpenCL platforms: none with a device";
+    if (platforms.empty()) text += "OpenCL platforms: none with a device\n";
     for (const std::string& platform : platforms) text += "OpenCL platform: " + platform + "\n";
-    text.pop_back();
-    return text;
+    return text + engine_text();
 }
 
 void Parser::add_scheme_options() {

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include <Eigen/Dense>
 #include <nanoflann.hpp>
@@ -18,6 +19,8 @@ constexpr int most_steps = 60;                                       // near an 
 constexpr double longest_step = 1;                                   // in a chart
 constexpr double double_tolerance = 1e-12, single_tolerance = 1e-7;  // a step's length, of the surface's size
 constexpr std::size_t evaluations_a_point = 4, smallest_piece = 1024;
+constexpr int start_count = 6;         // seeds that a search may begin at, one after the other
+constexpr double doubtful_part = 0.1;  // of the size of a seed's surroundings: where a point stays farther away, another seed may lead nearer
 
 using Vector = Eigen::Map<const Eigen::Vector3d>;
 
@@ -40,6 +43,12 @@ struct Batch {
         corners[i] = place.corner;
         uv[2 * i] = place.u;
         uv[2 * i + 1] = place.v;
+    }
+    /// Half the sides of a cell of a grid of so many cells a chart, one after the other, at place i.
+    double radius(std::size_t i, int grid) const {
+        const Vector u(&du[3 * i]), v(&dv[3 * i]);
+        const SurfacePlace& at = places[i];
+        return ((at.ua * u + at.va * v).norm() + (at.ub * u + at.vb * v).norm()) / (2.0 * grid);
     }
     void evaluate(DeviceSurface& surface, SamplePiece& piece, std::size_t count, const SurfaceValues& values) {
         surface.make_samples({count, faces.data(), corners.data(), uv.data()}, 0, count, piece);
@@ -80,6 +89,7 @@ Eigen::Vector2d newton_step(const Eigen::Matrix2d& hessian, const Eigen::Matrix2
 struct ClosestSearch::Seeds {
     std::vector<ChartPlace> places;
     std::vector<float> points;  // normalised; half the memory, and which of two seeds is nearer by a rounding does not matter
+    std::vector<float> radii;   // normalised: about how far the part of the surface reaches that a seed stands for
 
     std::size_t kdtree_get_point_count() const { return places.size(); }
     float kdtree_get_pt(std::size_t i, std::size_t axis) const { return points[3 * i + axis]; }
@@ -114,9 +124,10 @@ ClosestSearch::ClosestSearch(DeviceSurface& surface) : surface_(surface), charts
         batch.resize(count);
         for (std::size_t i = 0; i < count; ++i) batch.set(i, charts_.surface_place(seeds_->places[first + i]));
         SurfaceValues values;
-        values.points = batch.points.data();
+        values.points = batch.points.data(), values.du = batch.du.data(), values.dv = batch.dv.data();
         batch.evaluate(surface_, piece, count, values);
         for (std::size_t i = 0; i < 3 * count; ++i) seeds_->points[3 * first + i] = normalised(batch.points[i], i % 3);
+        for (std::size_t i = 0; i < count; ++i) seeds_->radii.push_back(static_cast<float>(batch.radius(i, grid) / surface_.size()));
     }
     seeds_->tree = std::make_unique<Seeds::Tree>(3, *seeds_, nanoflann::KDTreeSingleIndexAdaptorParams(16));
     seeds_->tree->buildIndex();
@@ -126,22 +137,28 @@ ClosestSearch::ClosestSearch(DeviceSurface& surface) : surface_(surface), charts
 class ClosestSearch::Piece {
 public:
     Piece(ClosestSearch& search, const double* points, std::size_t stride, std::size_t count)
-        : search_(search), points_(points), stride_(stride), searches_(count), active_(count) {
+        : search_(search), points_(points), stride_(stride), searches_(count), found_(count), starts_(count) {
         batch_.resize(count);
     }
 
-    void run(std::size_t first, const ClosestPoints& out, const Places* start) {
-        if (start != nullptr) start_at(first, *start);
-        else start_at_seeds();
-        for (int step = 0; step < most_steps && !active_.empty(); ++step) {
-            evaluate_trials();
-            take_trials();
-            set_trials();
+    void run(std::size_t first, const ClosestPoints& out, const Places* places) {
+        if (places != nullptr) {
+            begin_at(first, *places);
+            descend();
+        } else {
+            find_starts();
+            for (int k = 0; k < start_count && begin(k); ++k) descend();
         }
         give(first, out);
     }
 
 private:
+    /// A seed, -1 for none, and about how near the part of the surface that it stands for comes to the point; normalised.
+    struct Start {
+        Index seed = -1;
+        float least = 0;
+    };
+
     Vector target(std::size_t i) const { return Vector(points_ + i * stride_); }
 
     template <class Body>
@@ -149,28 +166,66 @@ private:
         parallel_for_each(count, body, smallest_piece);
     }
 
-    /// Every search begins at the seed that is nearest to its point.
-    void start_at_seeds() {
-        for_each(searches_.size(), [&](std::size_t i) {
-            Index nearest = 0;
-            float square = 0, at[3];
+    /// The seeds that are nearest to each point, as many as there are.
+    void find_starts() {
+        const Seeds& seeds = *search_.seeds_;
+        const std::size_t wanted = std::min<std::size_t>(start_count, seeds.places.size());
+        for_each(starts_.size(), [&](std::size_t i) {
+            float at[3], squares[start_count];
+            Index nearest[start_count];
             for (std::size_t c = 0; c < 3; ++c) at[c] = search_.normalised(points_[i * stride_ + c], c);
-            search_.seeds_->tree->knnSearch(at, 1, &nearest, &square);
-            begin_at(i, search_.seeds_->places[nearest]);
+            seeds.tree->knnSearch(at, wanted, nearest, squares);
+            for (std::size_t k = 0; k < wanted; ++k) starts_[i][k] = {nearest[k], std::sqrt(squares[k]) - seeds.radii[nearest[k]]};
         });
     }
 
-    void start_at(std::size_t first, const Places& start) {
-        for_each(searches_.size(), [&](std::size_t i) {
-            const std::size_t from = first + i;
-            begin_at(i, search_.charts_.chart_place(start.faces[from], start.corner(from), start.uv[2 * from], start.uv[2 * from + 1]));
+    /// Begins a search at the k-th start of every point: at the first of all, at further ones where they promise more than what was found. False if none does.
+    bool begin(int k) {
+        active_.clear();
+        for (std::size_t i = 0; i < starts_.size(); ++i)
+            if (k == 0 || promises_more(i, starts_[i][k])) active_.push_back(static_cast<Index>(i));
+        begin_active([&](Index i) { return search_.seeds_->places[starts_[i][k].seed]; });
+        return !active_.empty();
+    }
+
+    void begin_at(std::size_t first, const Places& places) {
+        active_.resize(searches_.size());
+        std::iota(active_.begin(), active_.end(), 0);
+        begin_active([&](Index i) {
+            const std::size_t from = first + static_cast<std::size_t>(i);
+            return search_.charts_.chart_place(places.faces[from], places.corner(from), places.uv[2 * from], places.uv[2 * from + 1]);
         });
     }
 
-    void begin_at(std::size_t i, const ChartPlace& place) {
-        searches_[i].best = place;
-        active_[i] = static_cast<Index>(i);
-        batch_.set(i, search_.charts_.surface_place(place));
+    template <class PlaceOf>
+    void begin_active(const PlaceOf& place_of) {
+        for_each(active_.size(), [&](std::size_t j) {
+            Search& search = searches_[active_[j]];
+            search = Search();
+            search.best = place_of(active_[j]);
+            batch_.set(j, search_.charts_.surface_place(search.best));
+        });
+        begun_ = active_;
+    }
+
+    void descend() {
+        for (int step = 0; step < most_steps && !active_.empty(); ++step) {
+            evaluate_trials();
+            take_trials();
+            set_trials();
+        }
+        keep_nearest();
+    }
+
+    bool promises_more(std::size_t i, const Start& start) const {
+        if (start.seed < 0 || search_.seeds_->places[start.seed].corner == found_[i].best.corner) return false;
+        const double distance = std::sqrt(found_[i].square) / search_.surface_.size();
+        return distance > doubtful_part * search_.seeds_->radii[start.seed] && start.least < distance;
+    }
+
+    void keep_nearest() {
+        for (const Index i : begun_)
+            if (found_[i].square < 0 || searches_[i].square < found_[i].square) found_[i] = searches_[i];
     }
 
     void evaluate_trials() {
@@ -231,8 +286,8 @@ private:
     }
 
     void give(std::size_t first, const ClosestPoints& out) {
-        const std::size_t count = searches_.size();
-        for_each(count, [&](std::size_t i) { batch_.set(i, search_.charts_.surface_place(searches_[i].best)); });
+        const std::size_t count = found_.size();
+        for_each(count, [&](std::size_t i) { batch_.set(i, search_.charts_.surface_place(found_[i].best)); });
         SurfaceValues values;
         values.points = batch_.points.data(), values.normals = batch_.normals.data();
         batch_.evaluate(search_.surface_, samples_, count, values);
@@ -252,8 +307,9 @@ private:
     ClosestSearch& search_;
     const double* points_;
     std::size_t stride_;
-    std::vector<Search> searches_;
-    std::vector<Index> active_;  // whose trials stand in batch_, in this order
+    std::vector<Search> searches_, found_;  // of the start at hand, and the nearest of all
+    std::vector<std::array<Start, start_count>> starts_;
+    std::vector<Index> begun_, active_;  // the points of this start, and those whose trials stand in batch_, in this order
     std::vector<char> goes_on_;
     Batch batch_;
     SamplePiece samples_;

@@ -10,16 +10,13 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
-#include <new>
-#include <stdexcept>
 #include <string_view>
 
 #include <unistd.h>
 
 #include "host/io/atomic_file.h"
+#include "host/io/content.h"
 #include "host/io/format.h"
-#include "host/io/gzip.h"
-#include "host/io/input_file.h"
 
 namespace lcl {
 namespace {
@@ -43,9 +40,23 @@ constexpr FormatRow format_rows[] = {
     {FileFormat::om, "OM", ".om", read_om, write_om, nullptr, true, false, false, false, false, false, false},
 };
 
-const FormatRow& row_of(FileFormat format) {
+/// Formats of points alone: host/io/points_file.cpp reads them.
+struct PointFormatRow {
+    FileFormat format;
+    const char* name;
+    const char* ending;
+};
+
+constexpr PointFormatRow point_format_rows[] = {{FileFormat::xyz, "XYZ", ".xyz"}, {FileFormat::csv, "CSV", ".csv"}, {FileFormat::pts, "PTS", ".pts"}};
+
+const FormatRow& row_of(FileFormat format, const std::string& path) {
     for (const FormatRow& row : format_rows)
         if (row.format == format) return row;
+    for (const PointFormatRow& row : point_format_rows)
+        if (row.format == format)
+            throw InvalidArgument(
+                shown_name(path) + ": " + row.name +
+                " holds points, not a mesh: `limitcl surface` (lcl_surface) makes a mesh from them; meshes are .obj, .off, .ply, .stl or .om");
     throw InvalidArgument("standard input and output need a format: obj, off, ply, stl or om");
 }
 
@@ -61,8 +72,8 @@ bool take_ending(std::string& path, std::string_view ending) {
 const FormatRow& choose_format(const std::string& path, FileFormat format, bool& gzip) {
     std::string stem = path;
     gzip = take_ending(stem, ".gz");
-    if (format != FileFormat::by_ending || path == "-") return row_of(format);
-    return row_of(format_of_path(path, gzip));
+    const bool is_given = format != FileFormat::by_ending || path == "-";
+    return row_of(is_given ? format : format_of_path(path, gzip), path);
 }
 
 std::string joined_property_names(const MeshFile& file, const ColourColumns& colours) {
@@ -134,28 +145,9 @@ void write_to_sink(const MeshFile& file, const FormatRow& row, bool gzip, ByteSi
     packed.finish();
 }
 
-MeshFile read_unpacked(const char* bytes, std::size_t size, const FormatRow& row, const std::string& name, bool with_normals) {
+MeshFile read_content(const char* bytes, std::size_t size, const FormatRow& row, const std::string& name, bool with_normals) {
     if (size == 0) throw BadInput(name + " is empty; it holds no mesh");
     return row.read({bytes, size, name, {}, with_normals});
-}
-
-/// Memory that cannot be had, in words.
-template <class Read>
-auto within_memory(const Read& read, std::size_t size, const std::string& name) try {
-    return read();
-} catch (const std::bad_alloc&) {
-    throw OutOfMemory("there is not enough memory to read " + name + " (" + std::to_string(size) + " bytes)");
-} catch (const std::length_error&) {
-    throw OutOfMemory("there is not enough memory to read " + name + " (" + std::to_string(size) + " bytes)");
-}
-
-MeshFile read_packed_or_not(const char* bytes, std::size_t size, const FormatRow& row, const std::string& name, bool with_normals) {
-    const auto read = [&] {
-        if (!is_gzip(bytes, size)) return read_unpacked(bytes, size, row, name, with_normals);
-        const OwnedBytes unpacked = unpack_gzip(bytes, size, name);
-        return read_unpacked(unpacked.data.get(), unpacked.size, row, name, with_normals);
-    };
-    return within_memory(read, size, name);
 }
 
 /// A plain text is read piece by piece: most of what reading a large file costs is new memory for it. Nothing where that is not for this file.
@@ -168,30 +160,37 @@ std::optional<MeshFile> try_read_pieces(const InputFile& file, const FormatRow& 
 
 }  // namespace
 
-FileFormat format_of_path(const std::string& path, bool& gzip) {
+FileFormat find_format(const std::string& path, bool& gzip) {
     std::string stem = path;
     gzip = take_ending(stem, ".gz");
     for (const FormatRow& row : format_rows)
         if (take_ending(stem, row.ending)) return row.format;
-    throw InvalidArgument("the ending of " + path + " names no mesh format; use .obj, .off, .ply, .stl or .om, with .gz behind it if packed");
+    for (const PointFormatRow& row : point_format_rows)
+        if (take_ending(stem, row.ending)) return row.format;
+    return FileFormat::by_ending;
+}
+
+FileFormat format_of_path(const std::string& path, bool& gzip) {
+    const FileFormat format = find_format(path, gzip);
+    if (format != FileFormat::by_ending) return format;
+    throw InvalidArgument("the ending of " + path +
+                          " names no mesh format; use .obj, .off, .ply, .stl or .om (points also: .xyz, .csv, .pts), with .gz behind it if packed");
 }
 
 MeshFile read_mesh(const std::string& path, FileFormat format, bool with_normals) {
     bool ends_in_gz = false;
     const FormatRow& row = choose_format(path, format, ends_in_gz);
     const InputFile file(path);
-    const std::string name = path == "-" ? "standard input" : path;
+    const std::string name = shown_name(path);
     if (!ends_in_gz && !with_normals)
         if (std::optional<MeshFile> mesh = try_read_pieces(file, row, name)) return *std::move(mesh);
-    const OwnedBytes bytes = file.read_all();
-    if (ends_in_gz && bytes.size > 0 && !is_gzip(bytes.data.get(), bytes.size))
-        throw BadInput(name + " is no gzip file; drop .gz from its name if it is not packed");
-    return read_packed_or_not(bytes.data.get(), bytes.size, row, name, with_normals);
+    return read_unpacked(file, ends_in_gz, name, [&](const char* bytes, std::size_t size) { return read_content(bytes, size, row, name, with_normals); });
 }
 
 MeshFile read_mesh_memory(const char* bytes, std::size_t size, FileFormat format, const std::string& name, bool with_normals) {
     bool ends_in_gz = false;
-    return read_packed_or_not(bytes, size, choose_format(name, format, ends_in_gz), name, with_normals);
+    const FormatRow& row = choose_format(name, format, ends_in_gz);
+    return read_unpacked(bytes, size, name, [&](const char* data, std::size_t length) { return read_content(data, length, row, name, with_normals); });
 }
 
 void write_mesh(const std::string& path, const MeshFile& file, FileFormat format, std::vector<std::string>& warnings) {

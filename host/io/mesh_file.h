@@ -12,7 +12,7 @@
 
 namespace lcl {
 
-enum class FileFormat { by_ending, obj, off, ply, stl, om };
+enum class FileFormat { by_ending, obj, off, ply, stl, om, xyz, csv, pts };  ///< the last three: points alone, for host/io/points_file.h
 
 /// One scalar per vertex that a file carries beside x, y, z: a colour component or a PLY property. Colours of OBJ are of type "double", from 0 to 1; those of
 /// OFF are that or "uchar"; those of OM "uchar". A writer converts to what its format has.
@@ -63,8 +63,11 @@ struct MeshFile {
 
 /// The format that an ending names (any case, .gz stripped); InvalidArgument if it names none. `gzip` says whether .gz was there.
 FileFormat format_of_path(const std::string& path, bool& gzip);
+/// The same, by_ending where it names none.
+FileFormat find_format(const std::string& path, bool& gzip);
 
-/// Reads a mesh. path "-" reads standard input and needs a format. FileError: cannot be opened; BadInput: malformed, with file and line or byte.
+/// Reads a mesh. path "-" reads standard input and needs a format. FileError: cannot be opened; BadInput: malformed, with file and line or byte;
+/// InvalidArgument: a format of points alone.
 /// Indices are checked for range by find_defects, not here, save where the format makes that impossible; counts in headers that the file cannot hold are
 /// BadInput. with_normals: normals of the vertices (OBJ, PLY, OFF) are kept instead of dropped; takes longer.
 MeshFile read_mesh(const std::string& path, FileFormat format = FileFormat::by_ending, bool with_normals = false);

@@ -35,6 +35,9 @@ public:
         skip_byte_order_mark();
     }
 
+    /// Words end at this character too, which is not skipped as blanks are.
+    void separate_by(char separator) { separator_ = separator; }
+
     /// On to another piece of the text. Line numbers count from where it begins; a byte order mark is looked for at the beginning of a text only.
     void move_to_piece(std::string_view piece, bool begins_text) {
         at_ = begin_ = piece.data();
@@ -152,7 +155,9 @@ public:
         fail(first, "'" + printable({first, static_cast<std::size_t>(at_ - first)}) + "' was found where " + what + " was expected");
     }
 
-    bool is_delimiter(char c) const { return is_blank(c) || is_line_break(c) || (c == comment_ && c != 0) || (c == '\\' && joins_lines_); }
+    bool is_delimiter(char c) const {
+        return is_blank(c) || is_line_break(c) || (c == comment_ && c != 0) || (c == separator_ && c != 0) || (c == '\\' && joins_lines_);
+    }
 
 private:
     void skip_byte_order_mark() {
@@ -176,6 +181,7 @@ private:
     const char* end_;
     const std::string& name_;
     char comment_;
+    char separator_ = 0;
     bool joins_lines_;
 };
 

@@ -18,4 +18,22 @@ struct PointCloud {
     std::size_t count() const { return points.size() / 3; }
 };
 
+/// Rows that cannot be used: how many, and the first ten.
+struct BadRows {
+    std::size_t count = 0;
+    std::vector<Index> first;
+};
+
+/// Points that are not finite.
+BadRows bad_points(const std::vector<double>& points);
+/// Normals that are not finite, or zero.
+BadRows bad_normals(const std::vector<double>& normals);
+
+/// Makes the normals of use to all or to none: one that is not finite or zero becomes that of the nearest point that has one; where more than half are so, all
+/// are left out. Either is told by a warning.
+void settle_normals(PointCloud& cloud);
+
+/// " is not finite, nor are 3 more: correct them or leave them out", for a sentence that begins with the first.
+std::string not_finite_text(const BadRows& bad);
+
 }  // namespace lcl

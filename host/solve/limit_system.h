@@ -14,6 +14,7 @@
 
 namespace lcl {
 
+constexpr double auto_alpha = 0.5;      ///< the mesh expansion paper's choice
 constexpr double near_singular = 0.05;  ///< smallest eigenvalue below which a warning is given and alpha auto takes 0.5
 
 /// Where an operator comes from.
@@ -85,6 +86,9 @@ void refuse_ghosts(const Plan& plan);
 
 /// Bounds and estimates lambda_min by a short Lanczos run on the device: some 20 passes at the first call, over the weakest part alone of a large mesh.
 const Spectrum& spectrum_of(LimitSystem& system);
+
+/// Whether alpha 0 should give way to auto_alpha: A is singular, indefinite or nearly singular.
+bool wants_other_alpha(LimitSystem& system);
 
 /// 1/min(2 a_ii - 1) where the smooth rows are diagonally dominant, else the block Hager-Higham estimate (Higham & Tisseur 2000), some ten short solves at the
 /// first call. Unsupported where has_inverse_norm is false.

@@ -181,4 +181,9 @@ const Spectrum& spectrum_of(LimitSystem& system) {
     return *system.spectrum;
 }
 
+bool wants_other_alpha(LimitSystem& system) {
+    const Spectrum& spectrum = spectrum_of(system);
+    return spectrum.singular || spectrum.indefinite || spectrum.smooth < near_singular;
+}
+
 }  // namespace lcl

@@ -200,7 +200,7 @@ LCL_API lcl_status lcl_mesh_read_memory_with_normals(const void* bytes, size_t s
 /** Writes completely or not at all, a sound mesh. Counts as a change of the mesh: what the format cannot hold is added to its notes of kind LCL_NOTE_WARNING.
  * path "-" is standard output and needs a format. */
 LCL_API lcl_status lcl_mesh_write(lcl_mesh mesh, const char* path, lcl_format format);
-/** The format that a path's ending names. */
+/** The format that a path's ending names, of points alone too: the functions of meshes refuse those. */
 LCL_API lcl_status lcl_format_of_path(const char* path, lcl_format* format);
 /** A copy with its own points: faces, features, properties and all else a file carried. */
 LCL_API lcl_status lcl_mesh_copy(lcl_mesh mesh, lcl_mesh* copy);
@@ -918,11 +918,15 @@ LCL_API lcl_status lcl_limit_surface_closest(lcl_limit_surface surface, size_t c
 /* ---------------------------------------------------------------- surfaces from point clouds */
 
 /** Points, and what may stand beside them: normals, colours. Copies what it is given. points: count rows of three, `stride` values apart (0: 3); normals: NULL,
- * or as many, of any length above 0, outwards. At most 2^31 - 1 points; finite (LCL_ERROR_BAD_INPUT names the first that is not). */
+ * or as many, of any length above 0, outwards. At most 2^31 - 1 points. LCL_ERROR_BAD_INPUT names the first that is not finite, or whose normal is zero. */
 LCL_API lcl_status lcl_cloud_create(size_t count, const double* points, size_t stride, const double* normals, size_t normal_stride, lcl_cloud* cloud);
-/** Reads points: the vertices of .ply .off .obj (faces are left out, with a note), and text: .xyz, a point a line, x y z [nx ny nz | r g b | nx ny nz r g b],
- * whole numbers from 0 to 255 being colours; .pts, the same after a line with their count, x y z [intensity] [r g b]; .csv, a header with x, y, z and maybe nx,
- * ny, nz, red, green, blue. Each also with .gz. path "-" is standard input and needs a format. LCL_ERROR_BAD_INPUT names the line or point. */
+/** Reads points. .ply .off .obj: the vertices, with nx ny nz, the normals of NOFF, or vn (the mean of those of a vertex's corners; without faces the i-th is that
+ * of vertex i), and colours. .xyz: a point a line, x y z [nx ny nz] [r g b]; blanks, commas or semicolons between numbers, as many numbers in every line, # before
+ * a comment. Three columns are colours where they hold whole numbers from 0 to 255, one of them above 1, or numbers from 0 to 1 that are no unit vectors; else
+ * normals. .pts: the same after a line with the number of points; also x y z intensity r g b. .csv: a header with x, y, z and maybe nx, ny, nz, red, green,
+ * blue (any case and order; comma, semicolon or tab). Each also with .gz. What else a file holds is left out. A normal that is zero or not finite becomes that
+ * of the nearest point with one; where more than half are so, the cloud has none. Notes tell of both. path "-" is standard input and needs a format.
+ * LCL_ERROR_BAD_INPUT names the line or point: not finite, a line with other columns than the first, a count that does not hold. */
 LCL_API lcl_status lcl_cloud_read(const char* path, lcl_format format, lcl_cloud* cloud);
 /** The same from bytes in memory; `name` stands in messages. */
 LCL_API lcl_status lcl_cloud_read_memory(const void* bytes, size_t size, lcl_format format, const char* name, lcl_cloud* cloud);
@@ -986,6 +990,7 @@ typedef struct lcl_surface_report {
     int32_t rounds;                                      /**< solves; least squares: corrections of the parameters */
     int32_t iterations;                                  /**< of all solves */
     int32_t converged;                                   /**< max <= tolerance x diagonal */
+    double alpha;                                        /**< Catmull-Clark: the one in use, after alpha_auto at the first solve */
     double diagonal;                                     /**< of the vertices of the approximation, model units */
     double rms, p95, max;                                /**< distances of the points to the limit surface, model units */
     int64_t outside_count;                               /**< points farther away than the tolerance */
@@ -993,8 +998,11 @@ typedef struct lcl_surface_report {
     double seconds_approximate, seconds_simplify, seconds_solve, seconds_measure, seconds_refine, seconds_total;
     char message[512]; /**< one sentence where the tolerance is not reached; "" otherwise */
 } lcl_surface_report;
-#define LCL_SURFACE_REPORT_INIT \
-    { (uint32_t)sizeof(lcl_surface_report), 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0.0, 0.0, 0.0, 0.0, 0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, "" }
+#define LCL_SURFACE_REPORT_INIT                                                                                                                               \
+    {                                                                                                                                                         \
+        (uint32_t)sizeof(lcl_surface_report), 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0.0, 0.0, 0.0, 0.0, 0.0, 0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, \
+            0.0, ""                                                                                                                                           \
+    }
 
 /** Control mesh of a limit surface through a point cloud (Doo-Sabin paper): the engine makes a polyhedral approximation; it is mended (edges of three faces,
  * vertices where surfaces touch), oriented (closed parts outwards, open ones by the cloud's normals where it has any), its holes are filled on request, and it

@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "host/points/simplify.h"
+
+#include <algorithm>
+#include <cfloat>
+
+#include <OpenMesh/Tools/Decimater/DecimaterT.hh>
+#include <OpenMesh/Tools/Decimater/ModAspectRatioT.hh>
+#include <OpenMesh/Tools/Decimater/ModHausdorffT.hh>
+#include <OpenMesh/Tools/Decimater/ModNormalFlippingT.hh>
+#include <OpenMesh/Tools/Decimater/ModQuadricT.hh>
+
+namespace lcl {
+namespace {
+
+using Decimater = OpenMesh::Decimater::DecimaterT<FitMesh>;
+constexpr float largest_turn = 45.0F;   // degrees
+constexpr float largest_aspect = 4.0F;  // longest side over the height on it
+
+double distance_to_segment(const FitMesh::Point& p, const FitMesh::Point& a, const FitMesh::Point& b) {
+    const FitMesh::Point side = b - a;
+    const double length = side.sqrnorm(), at = length > 0 ? std::clamp(((p - a) | side) / length, 0.0, 1.0) : 0.0;
+    return (p - a - side * at).norm();
+}
+
+/// Keeps the boundary where it is: a vertex of it may only go along it, as long as all that went before stays within the tolerance of the edge that is left.
+class BoundaryModule : public OpenMesh::Decimater::ModBaseT<FitMesh> {
+public:
+    using Base = OpenMesh::Decimater::ModBaseT<FitMesh>;
+    using CollapseInfo = OpenMesh::Decimater::CollapseInfoT<FitMesh>;
+    using Handle = OpenMesh::Decimater::ModHandleT<BoundaryModule>;
+
+    explicit BoundaryModule(FitMesh& mesh) : Base(mesh, true) { mesh.add_property(strayed_); }
+    ~BoundaryModule() override { mesh().remove_property(strayed_); }
+    const std::string& name() const override {
+        static const std::string name = "Boundary";
+        return name;
+    }
+    void set_tolerance(double tolerance) { tolerance_ = tolerance; }
+
+    void initialize() override {
+        for (const OpenMesh::EdgeHandle edge : mesh().edges()) mesh().property(strayed_, edge) = 0;
+    }
+
+    float collapse_priority(const CollapseInfo& collapse) override {
+        if (!mesh().is_boundary(collapse.v0)) return Base::LEGAL_COLLAPSE;
+        return strayed_by(collapse) <= tolerance_ ? Base::LEGAL_COLLAPSE : Base::ILLEGAL_COLLAPSE;
+    }
+
+    void preprocess_collapse(const CollapseInfo& collapse) override {
+        if (mesh().is_boundary(collapse.v0)) mesh().property(strayed_, mesh().edge_handle(other_side(collapse))) = strayed_by(collapse);
+    }
+
+private:
+    /// The boundary half-edge at v0 that the collapse does not remove.
+    OpenMesh::HalfedgeHandle other_side(const CollapseInfo& collapse) {
+        const OpenMesh::HalfedgeHandle out = mesh().halfedge_handle(collapse.v0);  // the boundary one
+        return mesh().to_vertex_handle(out) == collapse.v1 ? mesh().prev_halfedge_handle(out) : out;
+    }
+
+    double strayed_by(const CollapseInfo& collapse) {
+        const OpenMesh::HalfedgeHandle side = other_side(collapse);
+        const OpenMesh::VertexHandle far = mesh().to_vertex_handle(side) == collapse.v0 ? mesh().from_vertex_handle(side) : mesh().to_vertex_handle(side);
+        const double before = std::max(mesh().property(strayed_, mesh().edge_handle(side)), mesh().property(strayed_, mesh().edge_handle(collapse.v0v1)));
+        return before + distance_to_segment(collapse.p0, collapse.p1, mesh().point(far));
+    }
+
+    OpenMesh::EPropHandleT<double> strayed_;
+    double tolerance_ = 0;
+};
+
+class StopOnRequest : public OpenMesh::Decimater::Observer {
+public:
+    explicit StopOnRequest(const std::function<bool(std::size_t)>& progress) : Observer(4096), progress_(progress) {}
+    void notify(std::size_t collapses) override { stopped_ = progress_ && !progress_(collapses); }
+    bool abort() const override { return stopped_; }
+
+private:
+    const std::function<bool(std::size_t)>& progress_;
+    bool stopped_ = false;
+};
+
+/// bounded: by the tolerance; else down to `least` vertices.
+void collapse(FitMesh& mesh, bool bounded, double tolerance, std::size_t least, const std::function<bool(std::size_t)>& progress) {
+    Decimater decimater(mesh);
+    OpenMesh::Decimater::ModQuadricT<FitMesh>::Handle quadric;
+    OpenMesh::Decimater::ModNormalFlippingT<FitMesh>::Handle flipping;
+    OpenMesh::Decimater::ModAspectRatioT<FitMesh>::Handle aspect;
+    OpenMesh::Decimater::ModHausdorffT<FitMesh>::Handle hausdorff;
+    BoundaryModule::Handle boundary;
+    decimater.add(quadric);
+    decimater.module(quadric).set_max_err(DBL_MAX, false);
+    decimater.add(flipping);
+    decimater.module(flipping).set_max_normal_deviation(largest_turn);
+    decimater.add(aspect);
+    decimater.module(aspect).set_aspect_ratio(largest_aspect);
+    decimater.add(boundary);
+    decimater.module(boundary).set_tolerance(bounded ? tolerance : DBL_MAX);
+    if (bounded) {
+        decimater.add(hausdorff);
+        decimater.module(hausdorff).set_tolerance(tolerance);
+    }
+    StopOnRequest observer(progress);
+    decimater.set_observer(&observer);
+    decimater.initialize();
+    mesh.update_face_normals();
+    decimater.decimate_to(least);
+    mesh.garbage_collection();
+    if (observer.abort()) throw Cancelled("the simplification was cancelled");
+}
+
+}  // namespace
+
+void simplify(FitMesh& mesh, const SimplifyOptions& options) {
+    if (mesh.n_edges() == 0) return;
+    double length = 0;
+    for (const OpenMesh::EdgeHandle edge : mesh.edges()) length += mesh.calc_edge_length(edge);
+    // Edges of about 1, since the decimater's priorities are floats and hold lengths to the fourth power; afterwards the points as they were.
+    const double scale = static_cast<double>(mesh.n_edges()) / length;
+    OpenMesh::VPropHandleT<FitMesh::Point> given;
+    mesh.add_property(given);
+    for (const OpenMesh::VertexHandle vertex : mesh.vertices()) {
+        mesh.property(given, vertex) = mesh.point(vertex);
+        mesh.point(vertex) *= scale;
+    }
+    collapse(mesh, true, options.tolerance * scale, std::max<std::size_t>(4, options.max_vertices), options.progress);
+    if (options.max_vertices > 0 && mesh.n_vertices() > options.max_vertices) collapse(mesh, false, 0, options.max_vertices, options.progress);
+    for (const OpenMesh::VertexHandle vertex : mesh.vertices()) mesh.point(vertex) = mesh.property(given, vertex);
+    mesh.remove_property(given);
+}
+
+}  // namespace lcl
