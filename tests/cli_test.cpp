@@ -20,9 +20,8 @@ TEST_CASE("help lists the commands of this version and the program says what it 
     CHECK(help.exit_code == 0);
     CHECK(help.err.empty());
     for (const char* command : {"devices", "selftest", "info", "interpolate", "limit", "refine", "expand", "spectrum", "denoise", "sharpen", "morph", "texture",
-                                "evaluate", "closest"})
+                                "evaluate", "closest", "surface"})
         CHECK(contains(help.out, std::string("\n  ") + command + " "));
-    for (const char* command : {"surface "}) CHECK_FALSE(contains(help.out, std::string("\n  ") + command));
     const Outcome command_help = run(folder, "interpolate --help");
     CHECK(command_help.exit_code == 0);
     for (const char* option :
@@ -60,20 +59,6 @@ TEST_CASE("wrong usage is exit code 2 with one line that says what to do", "[cli
     CHECK(outcome.out.empty());
     CHECK(last_line(outcome.err).rfind("limitcl: error: ", 0) == 0);
     CHECK(folder.entries() == 2);
-}
-
-TEST_CASE("what comes with a later version is refused by name", "[cli][exit]") {
-    const Folder folder;
-    folder.file("in.obj", octahedron);
-    const auto [arguments, name] = GENERATE(
-        table<std::string, std::string>({{"surface --help", "'surface'"}, {"--quiet surface in.xyz", "'surface'"}, {"surface in.xyz -o o.obj", "'surface'"}}));
-    const Outcome outcome = run(folder, arguments);
-    INFO(arguments << "\n" << outcome.err);
-    CHECK(outcome.exit_code == 2);
-    CHECK(line_count(outcome.err) == 1);
-    CHECK(contains(outcome.err, name));
-    CHECK(contains(outcome.err, "yet"));
-    CHECK(folder.entries() == 1);
 }
 
 TEST_CASE("bad input is exit code 3, says where, and leaves the output as it was", "[cli][exit]") {

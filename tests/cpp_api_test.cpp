@@ -449,3 +449,108 @@ TEST_CASE("limit surfaces give values and closest points, and samples follow new
     two_phase.lambda = 0.3;
     CHECK(status_of([&] { LimitSurface(context, cube(), two_phase); }) == LCL_ERROR_INVALID_ARGUMENT);
 }
+
+TEST_CASE("clouds hold points, and what stands beside them in a file", "[cpp][cloud]") {
+    const Cloud cloud(octahedron_points, octahedron_points);
+    CHECK(cloud.count() == 6);
+    CHECK(cloud.points() == octahedron_points);
+    CHECK(cloud.normals() == octahedron_points);
+    CHECK_FALSE(cloud.has_colours());
+    CHECK(status_of([&] { cloud.colours(); }) == LCL_ERROR_INVALID_ARGUMENT);
+    const Cloud shared = cloud;
+    CHECK(shared.get() == cloud.get());
+    CHECK_FALSE(Cloud(octahedron_points).has_normals());
+
+    const std::string text = "0 0 0 255 0 0\n1 0 0 0 255 0\n";
+    const Cloud coloured = read_cloud(text.data(), text.size(), Format::xyz);
+    CHECK(coloured.count() == 2);
+    CHECK(coloured.colours() == std::vector<double>{1, 0, 0, 0, 1, 0});
+    CHECK(coloured.warnings().empty());
+    CHECK(status_of([] { read_cloud("no such file.xyz"); }) == LCL_ERROR_FILE);
+    CHECK(status_of([] { read_cloud("0 0\n", 4, Format::xyz); }) == LCL_ERROR_BAD_INPUT);
+    CHECK(status_of([] { Cloud(std::vector<double>{1, 2}); }) == LCL_ERROR_INVALID_ARGUMENT);
+    CHECK(status_of([] { Cloud(cube_points, octahedron_points); }) == LCL_ERROR_INVALID_ARGUMENT);
+    CHECK(status_of([] { Cloud(std::vector<double>{1, 2, NAN}); }) == LCL_ERROR_BAD_INPUT);
+}
+
+TEST_CASE("surfaces are fitted with engines that are functions", "[cpp][cloud]") {
+    const Context context;
+    std::vector<double> points = octahedron_points;
+    points.insert(points.end(), {0, 0, 9});
+    const Cloud cloud(points);
+    const auto join = [](const EngineInput& input) {
+        CHECK(input.points.size() == 21);
+        CHECK(input.normals.empty());
+        CHECK(input.settings == EngineSettings{{"key", "value"}});
+        CHECK(input.progress(0.5));
+        return Approximation{{}, octahedron_faces, {6}, {"the last point lies elsewhere"}};
+    };
+    FitOptions options;
+    options.engine = {{"key", "value"}};
+    std::vector<FitPhase> phases;
+    options.progress = [&](FitPhase phase, int, double, double) {
+        phases.push_back(phase);
+        return true;
+    };
+    const Fit fit = fit_surface(context, cloud, Engine("join", join), options);
+    CHECK(fit.report.require_ok().converged);
+    CHECK(fit.report.points == 6);
+    CHECK(fit.report.left_out == 1);
+    CHECK(fit.report.vertices == 6);
+    CHECK(fit.report.diagonal == Approx(octahedron_diagonal));
+    CHECK(fit.report.max <= 1e-3 * octahedron_diagonal);
+    CHECK(fit.report.interpolation_error <= 1e-6 * octahedron_diagonal);
+    CHECK(fit.report.approximation_faces == 8);
+    CHECK(fit.report.seconds_total > 0);
+    CHECK(fit.mesh.face_count() == 8);
+    const std::vector<std::string> warnings = fit.mesh.warnings();
+    CHECK(std::find(warnings.begin(), warnings.end(), "the last point lies elsewhere") != warnings.end());
+    CHECK(std::find(phases.begin(), phases.end(), FitPhase::approximate) != phases.end());
+    CHECK(std::find(phases.begin(), phases.end(), FitPhase::measure) != phases.end());
+    const ClosestPoints closest = LimitSurface(context, fit.mesh, Scheme::doo_sabin).closest(octahedron_points);
+    for (const double distance : closest.distances) CHECK(std::abs(distance) <= fit.report.max + 1e-6);
+
+    // Engines of C, other schemes, and results that are no success.
+    static const lcl_engine c_engine = {
+        static_cast<std::uint32_t>(sizeof(lcl_engine)),
+        "c",
+        "",
+        "",
+        "",
+        [](void*, const lcl_engine_points* given, const lcl_engine_option*, std::size_t, const lcl_engine_sink* sink) -> std::int32_t {
+            sink->give(sink->self, given->count, nullptr, 8, octahedron_faces.data());
+            return LCL_ENGINE_OK;
+        },
+        nullptr};
+    const Cloud all(octahedron_points);
+    CHECK(Engine(c_engine).name() == "c");
+    CHECK(fit_surface(context, all, Engine(c_engine), {}, Scheme::loop).report.require_ok().vertices == 6);
+    FitOptions strict;
+    strict.tolerance = 1e-15;
+    strict.precision = Precision::single;
+    const Cloud uneven(std::vector<double>{1, 0, 0.1, -1, 0.25, 0, 0, 1.5, 0.3, 0.7, -1, 0, 0, 0, 1.1, 0, 0, -2});
+    const Fit far = fit_surface(context, uneven, Engine(c_engine), strict);
+    CHECK(far.report.status == LCL_ERROR_NOT_CONVERGED);
+    CHECK_FALSE(far.report.message.empty());
+    CHECK(far.mesh.vertex_count() == 6);
+    CHECK(status_of([&] { far.report.require_ok(); }) == LCL_ERROR_NOT_CONVERGED);
+}
+
+TEST_CASE("what engines and progress of a fit throw reaches the caller", "[cpp][cloud]") {
+    const Context context;
+    const Cloud cloud(octahedron_points);
+    const auto fit_with = [&](const Engine::Function& function) { return fit_surface(context, cloud, Engine("test", function)); };
+    CHECK_THROWS_WITH(fit_with([](const EngineInput&) -> Approximation { throw std::runtime_error("from the engine"); }), "from the engine");
+    CHECK(status_of([&] { fit_with([](const EngineInput&) { return Approximation(); }); }) == LCL_ERROR_BAD_INPUT);  // no faces
+    CHECK(status_of([&] { fit_with([](const EngineInput&) { return Approximation{{}, {0, 1}, {}, {}}; }); }) == LCL_ERROR_INVALID_ARGUMENT);
+
+    const Engine engine("octahedron", [](const EngineInput& input) {
+        while (input.progress(-1)) continue;
+        return Approximation{{}, octahedron_faces, {}, {}};
+    });
+    FitOptions options;
+    options.progress = [](FitPhase, int, double, double) { return false; };
+    CHECK(status_of([&] { return fit_surface(context, cloud, engine, options); }) == LCL_ERROR_CANCELLED);
+    options.progress = [](FitPhase, int, double, double) -> bool { throw std::runtime_error("from progress"); };
+    CHECK_THROWS_WITH(fit_surface(context, cloud, engine, options), "from progress");
+}

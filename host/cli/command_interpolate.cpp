@@ -96,11 +96,6 @@ void warn_of_spectrum(Job& job, lcl_operator A) {
     if (job.report.vertices.empty()) job.report.vertices.assign(diagnosis.vertices, diagnosis.vertices + diagnosis.vertex_count);
 }
 
-/// "4.1e-03 (0.012 of the diagonal)"
-std::string error_text(double error, double diagonal) {
-    return short_number(error) + (diagonal > 0.0 ? " (" + short_number(error / diagonal) + " of the diagonal)" : "");
-}
-
 void say_solve(Job& job, std::size_t further_channels) {
     const lcl_solve_report& report = job.report.solve->report;
     const std::vector<double>& residuals = job.report.solve->residuals;
@@ -108,10 +103,10 @@ void say_solve(Job& job, std::size_t further_channels) {
     job.terminal.say("solved", std::string(solver_name(report.solver)) + ", " + counted(report.iterations, "iteration", "iterations") + ", " +
                                    precision_name(job.options.precision) + " precision: " + (report.converged ? "converged" : "not converged"));
     if (!residuals.empty())
-        job.terminal.say("residual", error_text(residuals.front(), diagonal) + " before, " + error_text(report.max_error, diagonal) + " after");
+        job.terminal.say("residual", length_text(residuals.front(), diagonal) + " before, " + length_text(report.max_error, diagonal) + " after");
     if (further_channels > 0) job.terminal.say("channels", "largest residual " + short_number(report.channel_error) + " of their ranges");
     if (std::isfinite(report.surface_error_bound))
-        job.terminal.say("surface", "within about " + error_text(report.surface_error_bound, diagonal) + " of the exact one");
+        job.terminal.say("surface", "within about " + length_text(report.surface_error_bound, diagonal) + " of the exact one");
 }
 
 /// Exporters that split vertices at every seam make such meshes.

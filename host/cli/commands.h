@@ -20,5 +20,6 @@ void run_morph(Job& job);
 void run_texture(Job& job);
 void run_evaluate(Job& job);
 void run_closest(Job& job);
+void run_surface(Job& job);
 
 }  // namespace lcl::cli

@@ -32,22 +32,6 @@ void release_log(Job& job) {
     for (const auto& [level, message] : std::exchange(job.held_log.messages, {})) log_to_terminal(&job, level, message.c_str());
 }
 
-/// Standard input is read here: a pipe may let wait for ever, and Ctrl-C has to end that.
-std::vector<char> standard_input() {
-    std::vector<char> bytes(1 << 16);
-    for (std::size_t size = 0;;) {
-        check_interrupt();
-        if (size == bytes.size()) bytes.resize(2 * size);
-        const ssize_t count = ::read(STDIN_FILENO, bytes.data() + size, bytes.size() - size);
-        if (count < 0 && errno == EINTR) continue;
-        if (count < 0) fail(exit_bad_input, std::string("standard input cannot be read: ") + std::strerror(errno));
-        size += static_cast<std::size_t>(count);
-        if (count > 0) continue;
-        bytes.resize(size);
-        return bytes;
-    }
-}
-
 Mesh read_mesh(Job& job, const std::string& path) {
     const Phase phase(job, &Seconds::read, "reading " + shown_name(path));
     const bool with_normals = job.options.normals == "mesh";
@@ -61,14 +45,6 @@ Mesh read_mesh(Job& job, const std::string& path) {
         check(read(bytes.data(), bytes.size(), job.options.format, "standard input", &mesh));
     }
     return Mesh(mesh);
-}
-
-MeshSummary summary_of(lcl_mesh mesh) {
-    MeshSummary summary;
-    check(lcl_mesh_get_info(mesh, &summary.info));
-    summary.face_degrees = histogram_of(mesh, LCL_HISTOGRAM_FACE_DEGREES);
-    if (summary.info.edges >= 0) summary.valences = histogram_of(mesh, LCL_HISTOGRAM_VALENCES);
-    return summary;
 }
 
 void say_mesh(Job& job, lcl_mesh mesh) {
@@ -138,6 +114,22 @@ void warn_of_notes(Job& job, lcl_mesh mesh) {
     for (int index = 0; index < lcl_mesh_note_count(mesh, LCL_NOTE_WARNING); ++index) warn(job, lcl_mesh_note(mesh, LCL_NOTE_WARNING, index));
 }
 
+/// Read here, not by the library: a pipe may let wait for ever.
+std::vector<char> standard_input() {
+    std::vector<char> bytes(1 << 16);
+    for (std::size_t size = 0;;) {
+        check_interrupt();
+        if (size == bytes.size()) bytes.resize(2 * size);
+        const ssize_t count = ::read(STDIN_FILENO, bytes.data() + size, bytes.size() - size);
+        if (count < 0 && errno == EINTR) continue;
+        if (count < 0) fail(exit_bad_input, std::string("standard input cannot be read: ") + std::strerror(errno));
+        size += static_cast<std::size_t>(count);
+        if (count > 0) continue;
+        bytes.resize(size);
+        return bytes;
+    }
+}
+
 Mesh read_input(Job& job) {
     Mesh mesh = read_mesh(job, job.options.input);
     {
@@ -169,6 +161,14 @@ Mesh read_target(Job& job) {
     const Phase phase(job, &Seconds::topology, "checking " + name);
     check_of_file(name, lcl_mesh_validate(mesh.get()));
     return mesh;
+}
+
+MeshSummary summary_of(lcl_mesh mesh) {
+    MeshSummary summary;
+    check(lcl_mesh_get_info(mesh, &summary.info));
+    summary.face_degrees = histogram_of(mesh, LCL_HISTOGRAM_FACE_DEGREES);
+    if (summary.info.edges >= 0) summary.valences = histogram_of(mesh, LCL_HISTOGRAM_VALENCES);
+    return summary;
 }
 
 Histogram histogram_of(lcl_mesh mesh, lcl_histogram which) {

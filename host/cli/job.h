@@ -61,12 +61,15 @@ void warn(Job& job, const std::string& text);
 /// The notes of a mesh that are warnings, as warnings.
 void warn_of_notes(Job& job, lcl_mesh mesh);
 
+/// All of standard input; Ctrl-C ends the waiting.
+std::vector<char> standard_input();
 /// IN with the sharp features of the options; the report gets its counts. Not checked further.
 Mesh read_input(Job& job);
 /// The same, refused (exit code 3) where it has no faces or is not sound.
 Mesh read_sound_input(Job& job);
 /// TO of a morph, refused where it is not sound. Its sharp features are not looked at.
 Mesh read_target(Job& job);
+MeshSummary summary_of(lcl_mesh mesh);
 Histogram histogram_of(lcl_mesh mesh, lcl_histogram which);
 
 /// Refuses what OUT's format cannot hold before anything is computed.

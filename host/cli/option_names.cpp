@@ -11,8 +11,9 @@ const Names<lcl_precision> precision_names = {{"single", LCL_PRECISION_SINGLE}, 
 const Names<lcl_solver> solver_names = {{"auto", LCL_SOLVER_AUTO},           {"pia", LCL_SOLVER_PIA}, {"wpia", LCL_SOLVER_WPIA},
                                         {"jacobi", LCL_SOLVER_JACOBI},       {"gs", LCL_SOLVER_GS},   {"gs-coloured", LCL_SOLVER_GS_COLOURED},
                                         {"chebyshev", LCL_SOLVER_CHEBYSHEV}, {"cg", LCL_SOLVER_CG}};
-const Names<lcl_format> format_names = {
-    {"obj", LCL_FORMAT_OBJ}, {"off", LCL_FORMAT_OFF}, {"ply", LCL_FORMAT_PLY}, {"stl", LCL_FORMAT_STL}, {"om", LCL_FORMAT_OM}};
+const Names<lcl_format> format_names = {{"obj", LCL_FORMAT_OBJ}, {"off", LCL_FORMAT_OFF}, {"ply", LCL_FORMAT_PLY}, {"stl", LCL_FORMAT_STL},
+                                        {"om", LCL_FORMAT_OM},   {"xyz", LCL_FORMAT_XYZ}, {"csv", LCL_FORMAT_CSV}, {"pts", LCL_FORMAT_PTS}};
+const Names<lcl_fit> fit_names = {{"interpolate", LCL_FIT_INTERPOLATE}, {"least-squares", LCL_FIT_LEAST_SQUARES}};
 const Names<lcl_series> series_names = {{"representation", LCL_SERIES_REPRESENTATION}, {"interpolation", LCL_SERIES_INTERPOLATION}};
 const Names<lcl_morph_path> path_names = {{"recursion", LCL_MORPH_RECURSION}, {"even", LCL_MORPH_EVEN}, {"linear", LCL_MORPH_LINEAR}};
 const Names<bool> operator_names = {{"limit", false}, {"features", true}};
@@ -26,6 +27,10 @@ const char* boundary_name(lcl_boundary boundary) { return name_of(boundary_names
 const char* precision_name(lcl_precision precision) { return name_of(precision_names, precision); }
 
 const char* solver_name(lcl_solver solver) { return name_of(solver_names, solver); }
+
+const char* format_name(lcl_format format) { return name_of(format_names, format); }
+
+const char* fit_name(lcl_fit fit) { return name_of(fit_names, fit); }
 
 const char* series_name(lcl_series series) { return name_of(series_names, series); }
 

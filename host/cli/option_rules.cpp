@@ -3,16 +3,29 @@
 
 #include <algorithm>
 #include <iterator>
+#include <map>
 #include <stdexcept>
 
 #include "host/cli/failure.h"
+#include "host/cli/option_names.h"
 #include "host/cli/points.h"
 
 namespace lcl::cli {
 
 namespace {
 
+constexpr const char* point_formats = ".ply .xyz .csv .off .obj .pts, each also with .gz";
+
+/// Shared options that say something of a mesh which comes in.
+const std::map<std::string, const char*> not_of_clouds = {{"--lambda", "the two-phase scheme begins with a mesh, and here one comes out: leave it out"},
+                                                          {"--creases", "the vertices of OUT are not known beforehand: give --crease-angle DEG"},
+                                                          {"--corners", "the vertices of OUT are not known beforehand: give --crease-angle DEG"},
+                                                          {"--channels", "a cloud has coordinates alone, and its colours come with them: leave it out"}};
+
+bool reads_cloud(const Options& options) { return options.command == "surface"; }
+
 void choose_scheme(Options& options) {
+    if (reads_cloud(options) && !options.has("--scheme")) options.scheme = LCL_SCHEME_DOO_SABIN;
     for (const char* flag : {"--alpha", "--lambda"}) {
         if (!options.has(flag)) continue;
         if (options.has("--mask")) fail(exit_usage, std::string(flag) + " is of catmull-clark and --mask of doo-sabin: give one of them");
@@ -28,20 +41,39 @@ void choose_scheme(Options& options) {
 bool is_of_surface(const Options& options) { return options.command == "evaluate" || options.command == "closest"; }
 bool writes_table(const Options& options) { return options.command == "spectrum" || is_of_surface(options); }
 
+/// One format for both standard streams: what comes in may be points, what goes out is a mesh.
+void check_stream_format(const Options& options, bool points, bool meshes) {
+    const std::string formats = !points ? "obj, off, ply, stl or om" : !meshes ? "ply, xyz, csv, off, obj or pts" : "obj, off or ply";
+    if (!options.has("--format")) fail(exit_usage, "standard input and output have no ending: give --format " + formats);
+    const std::string given = std::string("--format ") + format_name(options.format);
+    if (meshes && options.format > LCL_FORMAT_OM) fail(exit_usage, given + " holds points alone, no mesh: give " + formats);
+    if (points && (options.format == LCL_FORMAT_STL || options.format == LCL_FORMAT_OM)) fail(exit_usage, given + " holds meshes, no clouds: give " + formats);
+}
+
 void check_streams(const Options& options) {
     const bool mesh_to_output = options.output == "-" && !writes_table(options);
-    const bool streams = options.input == "-" || options.target == "-" || mesh_to_output;
-    if (streams && !options.has("--format")) fail(exit_usage, "standard input and output have no ending: give --format obj, off, ply, stl or om");
+    const bool points = reads_cloud(options) && options.input == "-";
+    const bool meshes = mesh_to_output || options.target == "-" || (options.input == "-" && !points);
+    const bool streams = points || meshes;
+    if (streams) check_stream_format(options, points, meshes);
     if (!streams && options.has("--format")) fail(exit_usage, "--format is for standard input and output; a file's ending names its format");
     if (options.output == "-" && options.report == "-") fail(exit_usage, "-o - and --report - cannot both have standard output: give one of them a file");
     if (options.map_file == "-") fail(exit_usage, "--map needs a file's name: standard output is for -o and --report");
 }
 
+void check_mesh_ending(const std::string& path) {
+    lcl_format format = LCL_FORMAT_BY_ENDING;
+    if (path.empty() || path == "-") return;
+    if (lcl_format_of_path(path.c_str(), &format) != LCL_OK) fail(exit_usage, lcl_last_error());
+    if (format > LCL_FORMAT_OM) fail(exit_usage, "'" + path + "' names a file of points alone: meshes are .obj .off .ply .stl .om, each also with .gz");
+}
+
 void check_endings(const Options& options) {
-    for (const std::string& path : {options.input, options.target, writes_table(options) ? std::string() : options.output}) {
-        lcl_format format = LCL_FORMAT_BY_ENDING;
-        if (!path.empty() && path != "-" && lcl_format_of_path(path.c_str(), &format) != LCL_OK) fail(exit_usage, lcl_last_error());
-    }
+    if (!reads_cloud(options)) check_mesh_ending(options.input);
+    check_mesh_ending(options.target);
+    if (!writes_table(options)) check_mesh_ending(options.output);
+    const bool bad_cloud = reads_cloud(options) && options.input != "-" && !is_points_name(options.input);
+    if (bad_cloud) fail(exit_usage, "'" + options.input + "': points are read from " + point_formats);
 }
 
 void check_report_name(const Options& options) {
@@ -95,7 +127,7 @@ void check_surface(const Options& options) {
     if (options.places_file == "-" || options.points_file == "-")
         fail(exit_usage, std::string(options.command == "evaluate" ? "--at" : "--points") + " needs a file's name");
     if (options.command == "closest" && !is_points_name(options.points_file))
-        fail(exit_usage, "'" + options.points_file + "': points are read from .ply .xyz .csv .off .obj .pts, each also with .gz");
+        fail(exit_usage, "'" + options.points_file + "': points are read from " + point_formats);
 }
 
 void check_denoise(const Options& options) {
@@ -127,7 +159,26 @@ void check_texture(const Options& options) {
         fail(exit_usage, "--on-mesh needs a refinement that keeps the vertices of the mesh, and doo-sabin's does not: take catmull-clark or loop");
 }
 
+/// surface
+void check_fit(const Options& options) {
+    for (const auto& [flag, reason] : not_of_clouds) {
+        if (options.has(flag.c_str())) fail(exit_usage, flag + ": " + reason);
+    }
+    if (options.has("--fair") && options.fit != LCL_FIT_LEAST_SQUARES)
+        fail(exit_usage, "--fair is the weight of the bending energy in a least-squares fit: add --fit least-squares, or leave it out");
+    if (options.has("--engine") && options.engine.empty()) fail(exit_usage, "--engine is empty: name one, or leave it out for the first installed");
+    for (auto setting = options.engine_options.begin(); setting != options.engine_options.end(); ++setting) {
+        const auto same = [&setting](const auto& earlier) { return earlier.first == setting->first; };
+        if (std::any_of(options.engine_options.begin(), setting, same)) fail(exit_usage, "--engine-option gives '" + setting->first + "' twice: leave one out");
+    }
+}
+
 }  // namespace
+
+const char* reason_against(const std::string& command, const std::string& flag) {
+    const auto found = not_of_clouds.find(flag);
+    return command == "surface" && found != not_of_clouds.end() ? found->second : nullptr;
+}
 
 const char* two_phase_option(const Options& options) {
     for (const char* flag : {"--refined", "--normals", "--handles", "--fair"})
@@ -150,6 +201,7 @@ void apply_rules(Options& options) {
     if (is_of_surface(options)) check_surface(options);
     if (options.command == "denoise") check_denoise(options);
     if (options.command == "texture") check_texture(options);
+    if (reads_cloud(options)) check_fit(options);
 }
 
 }  // namespace lcl::cli

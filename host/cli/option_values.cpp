@@ -127,6 +127,12 @@ std::vector<double> parse_colours(const std::string& text) {
     return colours;
 }
 
+std::pair<std::string, std::string> parse_setting(const std::string& text) {
+    const std::size_t sign = text.find('=');
+    if (sign == std::string::npos || sign == 0) refuse(text, "of the form KEY=VALUE");
+    return {text.substr(0, sign), text.substr(sign + 1)};
+}
+
 FramePattern parse_frame_pattern(const std::string& text) {
     FramePattern pattern;
     const std::size_t percent = text.find('%');

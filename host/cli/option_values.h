@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace lcl::cli {
@@ -48,6 +49,8 @@ std::vector<int> parse_counts(const std::string& text);
 std::vector<double> parse_ratios(const std::string& text);
 /// "#rrggbb,..": three numbers from 0 to 1 a colour.
 std::vector<double> parse_colours(const std::string& text);
+/// "KEY=VALUE", the key not empty.
+std::pair<std::string, std::string> parse_setting(const std::string& text);
 /// A file's name with exactly one %d, or %0Nd (N from 1 to 9), and no other %.
 FramePattern parse_frame_pattern(const std::string& text);
 

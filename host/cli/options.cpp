@@ -3,11 +3,11 @@
 #include "host/cli/options.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <iostream>
 #include <limits>
 #include <set>
+#include <sstream>
 #include <stdexcept>
 #include <utility>
 #include <vector>
@@ -24,8 +24,6 @@
 namespace lcl::cli {
 
 namespace {
-
-const std::array<const char*, 1> later_commands = {"surface"};
 
 constexpr const char* scheme_group = "Scheme and sharp features";
 constexpr const char* solve_group = "Values and solving";
@@ -93,10 +91,26 @@ void set_handles(Options& options, const std::string& text) {
     }
 }
 
+void add_setting(Options& options, const std::string& text) {
+    try {
+        options.engine_options.push_back(parse_setting(text));
+    } catch (const std::invalid_argument& error) {
+        throw CLI::ValidationError("--engine-option", error.what());
+    }
+}
+
 CLI::Validator positive_number() {
     const auto test = [](const std::string& text) {
         const std::optional<double> value = to_number(text);
         return value && std::isfinite(*value) && *value > 0.0 ? std::string() : "'" + text + "' is not a number above 0";
+    };
+    return CLI::Validator(test, "");
+}
+
+CLI::Validator weight() {
+    const auto test = [](const std::string& text) {
+        const std::optional<double> value = to_number(text);
+        return value && std::isfinite(*value) && *value >= 0.0 ? std::string() : "'" + text + "' is not a number from 0 on";
     };
     return CLI::Validator(test, "");
 }
@@ -126,6 +140,8 @@ CLI::Validator count_within(int least, int most) {
 }
 
 CLI::Validator count_from(int least) { return count_within(least, 1000000000); }
+
+bool reads_nothing(const std::string& command) { return command == "devices" || command == "selftest"; }
 
 class Parser {
 public:
@@ -162,11 +178,11 @@ private:
     void add_texture();
     void add_evaluate();
     void add_closest();
+    void add_surface();
     CLI::App* add_command(const char* name, const char* text, bool reads_mesh, bool writes_mesh);
-    std::string common_help(bool reads_mesh) const;
+    std::string common_help(const std::string& command) const;
     std::string help_page() const;
     [[noreturn]] void refuse_extras(std::vector<std::string> extras) const;
-    void refuse_what_is_not_there() const;
     void note_what_is_given();
 
     Options& options_;
@@ -183,9 +199,24 @@ std::string engine_text() {
     return join(lines, "\n");
 }
 
+/// The same with their options, a line each.
+std::string engine_help() {
+    std::vector<std::string> warnings;
+    std::string text = "Engines installed:";
+    const std::vector<Engine> engines = installed_engines(warnings);
+    for (const Engine& engine : engines) {
+        text += "\n  " + engine.name + ": " + engine.description + ", " + engine.licence;
+        std::istringstream options(engine.options);
+        for (std::string line; std::getline(options, line);) text += "\n    " + line;
+    }
+    if (engines.empty()) text += " none";
+    for (const std::string& warning : warnings) text += "\n  warning: " + warning;
+    return text + "\n";
+}
+
 std::string Parser::version_text() {
-    std::string text =
-        std::string("limitcl ") + lcl_version_string() + "\n" + lcl_build_string() + "\nfile formats: .obj .off .ply .stl .om, each also with .gz\n";
+    std::string text = std::string("limitcl ") + lcl_version_string() + "\n" + lcl_build_string() +
+                       "\nfile formats: .obj .off .ply .stl .om of meshes, .ply .xyz .csv .off .obj .pts of points, each also with .gz\n";
     std::set<std::string> platforms;
     for (int index = 0; index < lcl_device_count(); ++index) {
         lcl_device_info info = LCL_DEVICE_INFO_INIT;
@@ -197,7 +228,8 @@ std::string Parser::version_text() {
 }
 
 void Parser::add_scheme_options() {
-    add_choice(app_, "--scheme", options_.scheme, scheme_names, "Default: loop if all faces are triangles, else catmull-clark")->group(scheme_group);
+    add_choice(app_, "--scheme", options_.scheme, scheme_names, "Default: loop if all faces are triangles, else catmull-clark; surface: doo-sabin")
+        ->group(scheme_group);
     app_.add_option_function<std::string>(
             "--alpha", [this](const std::string& text) { set_alpha(options_, text); },
             "Catmull-Clark parameter, 0 to 1 (default 0); auto: 0, or 0.5 where 0 is singular or nearly so")
@@ -255,8 +287,10 @@ CLI::App* Parser::add_command(const char* name, const char* text, bool reads_mes
     if (reads_mesh)
         command->add_option("IN", options_.input, "Mesh: .obj .off .ply .stl .om, also .gz; `-`: standard input (needs --format)")->type_name("")->required();
     if (writes_mesh)
-        command->add_option("-o,--output", options_.output, "Mesh to write, may be IN; `-`: standard output (needs --format)")->type_name("OUT")->required();
-    command->footer([this, reads_mesh] { return common_help(reads_mesh); });
+        command->add_option("-o,--output", options_.output, "Mesh to write, may be the input; `-`: standard output (needs --format)")
+            ->type_name("OUT")
+            ->required();
+    command->footer([this, command] { return common_help(command->get_name()); });
     return command;
 }
 
@@ -275,11 +309,7 @@ void Parser::add_commands() {
     add_texture();
     add_evaluate();
     add_closest();
-    for (const char* name : later_commands) {
-        CLI::App* command = app_.add_subcommand(name)->group("")->prefix_command();
-        command->set_help_flag();
-        command->fallthrough(false);
-    }
+    add_surface();
 }
 
 void Parser::add_interpolate() {
@@ -368,7 +398,7 @@ void Parser::add_morph() {
         "--even", [this] { options_.path = LCL_MORPH_EVEN; }, "Even steps that end on TO itself, instead of --rho");
     command->add_flag_callback(
         "--linear", [this] { options_.path = LCL_MORPH_LINEAR; }, "Straight lines, for comparison");
-    command->footer([this] { return common_help(true); });
+    command->footer([this] { return common_help("morph"); });
 }
 
 void Parser::add_texture() {
@@ -406,33 +436,51 @@ void Parser::add_closest() {
     command->add_option("-o,--output", options_.output, "Table to write; `-`: standard output")->type_name("OUT.csv")->required();
 }
 
-std::string Parser::common_help(bool reads_mesh) const {
+void Parser::add_surface() {
+    CLI::App* command = add_command("surface", "Control mesh of a surface through a cloud of points", false, true);
+    command->add_option("POINTS", options_.input, "Points: .ply .xyz .csv .off .obj .pts, also .gz; `-`: standard input (needs --format)")
+        ->type_name("")
+        ->required();
+    command->add_option("--tolerance", options_.fit_tolerance, "Largest distance of a point, relative to the bounding box's diagonal (default 1e-3)")
+        ->check(positive_number())
+        ->type_name("T");
+    command->add_option("--vertices", options_.most_vertices, "At most so many (default: as many as the tolerance takes)")
+        ->check(count_from(4))
+        ->type_name("N");
+    add_choice(*command, "--fit", options_.fit, fit_names,
+               "Default interpolate: through points of the cloud; least-squares: as near as such a mesh can come to all of them, for noise");
+    command->add_option("--fair", options_.fit_fair, "Weight of the bending energy in a least-squares fit (default 1e-3)")->check(weight())->type_name("W");
+    command->add_option("--fill-holes", options_.fill_holes, "Close boundary loops of at most so many edges")->check(count_within(3, 1000))->type_name("EDGES");
+    command->add_option("--engine", options_.engine, "What makes the first mesh of the points (default: the first installed, see below)")->type_name("NAME");
+    const auto add_settings = [this](const std::vector<std::string>& settings) {
+        for (const std::string& setting : settings) add_setting(options_, setting);
+    };
+    command->add_option_function<std::vector<std::string>>("--engine-option", add_settings, "An option of the engine; may be given for each of them")
+        ->allow_extra_args(false)
+        ->type_name("KEY=VALUE");
+    command->footer([this] { return engine_help() + "\n" + common_help("surface"); });
+}
+
+std::string Parser::common_help(const std::string& command) const {
     const CLI::Formatter formatter;
     std::string text = "Before or after the command's name:";
     for (const char* group : {scheme_group, solve_group, run_group}) {
-        if (!reads_mesh && group != run_group) continue;
-        text += formatter.make_group(group, false, app_.get_options([group](const CLI::Option* option) { return option->get_group() == group; }));
+        if (group != run_group && reads_nothing(command)) continue;
+        const auto is_taken = [&](const CLI::Option* option) { return option->get_group() == group && !reason_against(command, option->get_name()); };
+        text += formatter.make_group(group, false, app_.get_options(is_taken));
     }
     return text;
 }
 
 /// Also refuses options of meshes with a command that reads none.
 void Parser::note_what_is_given() {
-    const bool reads_mesh = options_.command != "devices" && options_.command != "selftest";
     for (CLI::App* app : {&app_, app_.get_subcommands().front()}) {
         for (const CLI::Option* option : app->get_options()) {
             if (option->count() == 0) continue;
             options_.given.insert(option->get_name());
             const bool of_meshes = option->get_group() == scheme_group || option->get_group() == solve_group;
-            if (of_meshes && !reads_mesh) fail(exit_usage, "'" + options_.command + "' reads no mesh and takes no " + option->get_name());
+            if (of_meshes && reads_nothing(options_.command)) fail(exit_usage, "'" + options_.command + "' reads no mesh and takes no " + option->get_name());
         }
-    }
-}
-
-void Parser::refuse_what_is_not_there() const {
-    for (const char* name : later_commands) {
-        if (options_.command == name)
-            fail(exit_usage, std::string("this version does not have '") + name + "' yet; `limitcl --help` lists the commands it has");
     }
 }
 
@@ -466,7 +514,6 @@ std::optional<int> Parser::parse(int argc, char** argv) {
     const std::vector<CLI::App*> commands = app_.get_subcommands();
     if (commands.empty()) fail(exit_usage, "no command; `limitcl --help` lists them");
     options_.command = commands.front()->get_name();
-    refuse_what_is_not_there();
     note_what_is_given();
     apply_rules(options_);
     return std::nullopt;

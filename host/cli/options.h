@@ -7,6 +7,7 @@
 #include <optional>
 #include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <limitcl/limitcl.h>
@@ -109,6 +110,15 @@ struct Options {
 
     // closest
     std::string points_file;
+
+    // surface: `input` holds points
+    double fit_tolerance = 1e-3;  ///< of the points' distances, relative to the diagonal
+    int most_vertices = 0;        ///< 0: as many as the tolerance takes
+    lcl_fit fit = LCL_FIT_INTERPOLATE;
+    double fit_fair = 1e-3;  ///< least squares
+    std::string engine;      ///< empty: the first installed
+    std::vector<std::pair<std::string, std::string>> engine_options;
+    int fill_holes = 0;  ///< edges of the largest hole, 0: none
 
     bool has(const char* option) const { return given.count(option) > 0; }
 };

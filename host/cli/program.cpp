@@ -19,7 +19,7 @@ using Command = void (*)(Job&);
 const std::map<std::string, Command> commands = {
     {"devices", run_devices}, {"selftest", run_selftest}, {"info", run_info},         {"interpolate", run_interpolate}, {"limit", run_limit},
     {"refine", run_refine},   {"expand", run_expand},     {"spectrum", run_spectrum}, {"denoise", run_denoise},         {"sharpen", run_sharpen},
-    {"morph", run_morph},     {"texture", run_texture},   {"evaluate", run_evaluate}, {"closest", run_closest}};
+    {"morph", run_morph},     {"texture", run_texture},   {"evaluate", run_evaluate}, {"closest", run_closest},         {"surface", run_surface}};
 
 int end_with(Job& job, const Failure& failure) {
     job.report.status = failure.status;

@@ -74,6 +74,40 @@ void add_two_phase(Json& json, const lcl_two_phase_report& findings) {
     json["two_phase"]["fair_converged"] = findings.fair_converged != 0;
 }
 
+Json fit_seconds_json(const lcl_surface_report& fit) {
+    return {{"approximate", fit.seconds_approximate}, {"simplify", fit.seconds_simplify}, {"solve", fit.seconds_solve},
+            {"measure", fit.seconds_measure},         {"refine", fit.seconds_refine},     {"total", fit.seconds_total}};
+}
+
+void add_fit(Json& json, const FitSummary& summary) {
+    const lcl_surface_report& fit = summary.report;
+    json["converged"] = fit.converged != 0;
+    json["iterations"] = fit.iterations;
+    json["fit"] = {{"points", fit.point_count},
+                   {"rms", number_or_null(fit.rms)},
+                   {"p95", number_or_null(fit.p95)},
+                   {"max", number_or_null(fit.max)},
+                   {"vertices", fit.vertices},
+                   {"faces", fit.faces},
+                   {"tolerance", number_or_null(summary.tolerance)},
+                   {"outside", fit.outside_count},
+                   {"rounds", fit.rounds},
+                   {"duplicates", fit.duplicate_count},
+                   {"left_out", fit.left_out_count},
+                   {"unused", fit.unused_count},
+                   {"approximation",
+                    {{"vertices", fit.approximation_vertices},
+                     {"faces", fit.approximation_faces},
+                     {"components", fit.components},
+                     {"boundary_loops", fit.boundary_loops}}},
+                   {"filled_holes", fit.filled_holes},
+                   {"dropped_faces", fit.dropped_faces},
+                   {"split_vertices", fit.split_vertices},
+                   {"simplified_vertices", fit.simplified_vertices},
+                   {"interpolation_error", number_or_null(fit.interpolation_error)},
+                   {"seconds", fit_seconds_json(fit)}};
+}
+
 /// The rows of the CSV.
 Json spectrum_json(const SpectrumSummary& spectrum) {
     const std::size_t width = spectrum.channels.size();
@@ -172,12 +206,13 @@ std::string to_json(const Report& report) {
     if (report.device) json["device"] = {{"platform", report.device->platform}, {"name", report.device->name}, {"version", report.device->version}};
     if (report.mesh) {
         json["mesh"] = mesh_json(*report.mesh);
-        json["diagonal"] = number_or_null(report.mesh->info.diagonal);
+        json["diagonal"] = number_or_null(report.fit ? report.fit->report.diagonal : report.mesh->info.diagonal);
     }
     if (!report.scheme.empty()) json["scheme"] = report.scheme;
     json["parameters"] = parameters_json(report);
     if (report.solve) add_solve(json, *report.solve);
     if (report.two_phase) add_two_phase(json, *report.two_phase);
+    if (report.fit) add_fit(json, *report.fit);
     if (report.volume) json["volume"] = *report.volume;
     if (report.spectrum) json["spectrum"] = spectrum_json(*report.spectrum);
     if (report.info) add_info(json, *report.info);

@@ -52,6 +52,12 @@ struct KernelCheck {
     bool passed = false;
 };
 
+/// A surface through a cloud.
+struct FitSummary {
+    lcl_surface_report report = LCL_SURFACE_REPORT_INIT;
+    double tolerance = 0.0;  ///< model units
+};
+
 /// Energies of the terms of the expansion, channel by channel.
 struct SpectrumSummary {
     std::vector<std::string> channels;  ///< x, y, z, and the names of further ones
@@ -78,6 +84,7 @@ struct Report {
     std::vector<std::pair<std::string, Parameter>> parameters;
     std::optional<SolveSummary> solve;
     std::optional<lcl_two_phase_report> two_phase;
+    std::optional<FitSummary> fit;
     std::optional<std::array<double, 2>> volume;  ///< before and after, of closed meshes
     std::optional<SpectrumSummary> spectrum;
     std::optional<InfoSummary> info;

@@ -85,6 +85,10 @@ std::string short_number(double value) {
     return text;
 }
 
+std::string length_text(double length, double diagonal) {
+    return short_number(length) + (diagonal > 0.0 ? " (" + short_number(length / diagonal) + " of the diagonal)" : "");
+}
+
 std::string counted(long long count, const char* one, const char* many) { return std::to_string(count) + " " + (count == 1 ? one : many); }
 
 std::string byte_text(unsigned long long bytes) {

@@ -41,6 +41,8 @@ std::string table_text(const std::vector<std::vector<std::string>>& rows);
 
 /// A number with four significant digits at most: 0.0123, 4.568e-09.
 std::string short_number(double value);
+/// "0.0041 (0.012 of the diagonal)".
+std::string length_text(double length, double diagonal);
 /// "1 vertex", "2 vertices".
 std::string counted(long long count, const char* one, const char* many);
 /// 17179869184 -> "16.0 GiB".

@@ -41,6 +41,7 @@ using RefinerHandle = Handle<lcl_refiner, lcl_refiner_retain, lcl_refiner_releas
 using TangentsHandle = Handle<lcl_tangents, lcl_tangents_retain, lcl_tangents_release>;
 using LimitSurfaceHandle = Handle<lcl_limit_surface, lcl_limit_surface_retain, lcl_limit_surface_release>;
 using SamplesHandle = Handle<lcl_samples, lcl_samples_retain, lcl_samples_release>;
+using CloudHandle = Handle<lcl_cloud, lcl_cloud_retain, lcl_cloud_release>;
 
 }  // namespace limitcl
 

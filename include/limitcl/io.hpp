@@ -13,7 +13,10 @@ enum class Format {
     off = LCL_FORMAT_OFF,
     ply = LCL_FORMAT_PLY,
     stl = LCL_FORMAT_STL,
-    om = LCL_FORMAT_OM
+    om = LCL_FORMAT_OM,
+    xyz = LCL_FORMAT_XYZ,  ///< this and what follows: points alone
+    csv = LCL_FORMAT_CSV,
+    pts = LCL_FORMAT_PTS
 };
 
 /// Reads .obj .off .ply .stl .om, each also with .gz. path "-" is standard input and needs a format.

@@ -18,6 +18,7 @@
 #include "io.hpp"
 #include "limit_operator.hpp"
 #include "mesh.hpp"
+#include "points.hpp"
 #include "refine.hpp"
 #include "scheme.hpp"
 #include "solve.hpp"
