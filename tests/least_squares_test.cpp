@@ -5,6 +5,7 @@
 #include <random>
 
 #include <catch2/catch.hpp>
+#include <unsupported/Eigen/KroneckerProduct>
 
 #include "host/error.h"
 #include "host/evaluate/catmull_clark_kinds.h"
@@ -204,10 +205,17 @@ MatrixXd energy_matrix(const PatchTable& table) {
     return sum;
 }
 
-MatrixXd dense(const Stencils& rows, Index columns) {
-    MatrixXd matrix = MatrixXd::Zero(static_cast<Eigen::Index>(rows.offsets.size()) - 1, columns);
-    for (Eigen::Index i = 0; i < matrix.rows(); ++i)
-        for (std::size_t k = rows.offsets[i]; k < rows.offsets[i + 1]; ++k) matrix(i, rows.indices[k]) += rows.weights[k];
+using PackedPoints = Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor>;
+
+MatrixXd dense_blocks(const FitSystem& system) {
+    const Stencils& pattern = system.pattern();
+    const auto n = static_cast<Eigen::Index>(pattern.offsets.size()) - 1;
+    MatrixXd matrix = MatrixXd::Zero(3 * n, 3 * n);
+    for (Eigen::Index i = 0; i < n; ++i)
+        for (std::size_t k = pattern.offsets[i]; k < pattern.offsets[i + 1]; ++k) {
+            const double* const v = &system.normal()[FitSystem::block * k];
+            matrix.block<3, 3>(3 * i, 3 * pattern.indices[k]) << v[0], v[1], v[2], v[1], v[3], v[4], v[2], v[4], v[5];
+        }
     return matrix;
 }
 
@@ -237,25 +245,38 @@ TEST_CASE("the normal equations are those of rows that are formed one by one", "
     const auto [shape, options] = GENERATE(from_range(system_cases()));
     CAPTURE(shape.name);
     constexpr int count = 100;
-    constexpr double fair = 0.3;
+    constexpr double fair = 0.3, along = 0.2;
     const PatchTable table = table_of(shape, options);
+    const Index n = table.point_count;
     const RandomPlaces places(shape.mesh, options.scheme, count);
-    const MatrixXd points = solver_test::rough_values(count, 3, 9), rows = rows_at(table, places.all());
-    const Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor> packed = points.rowwise() + Eigen::RowVector3d(100, 0, -50);
+    const MatrixXd points = solver_test::rough_values(count, 3, 9), rows = rows_at(table, places.all()), energy = energy_matrix(table);
+    const PackedPoints packed = points.rowwise() + Eigen::RowVector3d(100, 0, -50);
+    PackedPoints normals = solver_test::rough_values(count, 3, 10).rowwise().normalized();
+    MatrixXd normal = MatrixXd::Zero(3 * n, 3 * n);
+    Eigen::VectorXd right = Eigen::VectorXd::Zero(3 * n);
+    for (int i = 0; i < count; ++i) {
+        Eigen::Matrix3d metric = along * Eigen::Matrix3d::Identity() + (1 - along) * normals.row(i).transpose() * normals.row(i);
+        if (i % 5 == 0) {
+            metric.setIdentity();
+            normals.row(i).setConstant(std::numeric_limits<double>::quiet_NaN());
+        }
+        const MatrixXd row = Eigen::kroneckerProduct(rows.row(i), Eigen::Matrix3d::Identity());
+        normal += row.transpose() * metric * row / count;
+        right += row.transpose() * metric * points.row(i).transpose() / count;
+    }
+    normal += fair * MatrixXd(Eigen::kroneckerProduct(energy, Eigen::Matrix3d::Identity()));
     FitSystem system(table, fair);
-    system.set_samples(places.all(), packed.data(), {100, 0, -50});
-    const MatrixXd normal = rows.transpose() * rows / count + fair * energy_matrix(table), right = rows.transpose() * points / count;
-    // Sums of some hundreds of products of either order; the origin is taken away from numbers up to 100.
-    const MatrixXd found = dense(system.normal(), table.point_count);
-    CHECK((found - normal).cwiseAbs().maxCoeff() < 1e-13 * normal.cwiseAbs().maxCoeff());
-    CHECK((Eigen::Map<const Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor>>(system.right().data(), right.rows(), 3) - right).cwiseAbs().maxCoeff() <
-          1e-13);
+    system.set_samples({places.all(), packed.data(), normals.data(), along, {100, 0, -50}});
+    // Sums of some hundreds of products in another order; the origin is taken away from numbers up to 100.
+    CHECK((dense_blocks(system) - normal).cwiseAbs().maxCoeff() < 1e-13 * normal.cwiseAbs().maxCoeff());
+    CHECK((Eigen::Map<const Eigen::VectorXd>(system.right().data(), 3 * n) - right).cwiseAbs().maxCoeff() < 1e-13);
 
     std::vector<double> control(shape.mesh.positions.size(), 0.0);
-    CHECK(system.solve(control, 1e-14, 1000) < 1000);
-    const Eigen::Map<const Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor>> solution(control.data(), right.rows(), 3);
+    CHECK(system.solve(control, 1e-14, 2000) < 2000);
+    const Eigen::Map<const Eigen::VectorXd> solution(control.data(), 3 * n);
     CHECK((normal * solution - right).cwiseAbs().maxCoeff() < 1e-12);
-    CHECK_THAT(system.energy(control), WithinAbs((solution.transpose() * energy_matrix(table) * solution).trace(), 1e-11));
+    const Eigen::Map<const PackedPoints> solved(control.data(), n, 3);
+    CHECK_THAT(system.energy(control), WithinAbs((solved.transpose() * energy * solved).trace(), 1e-11));
 }
 
 TEST_CASE("the bending energy is the same however often the table refines the mesh", "[least_squares]") {

@@ -76,7 +76,8 @@ private:
         for (const int count : {1, 3}) {
             std::vector<double> fewer(count * rows.cols());
             rows_.write(place, count, fewer.data());
-            for (std::size_t i = 0; i < fewer.size(); ++i) REQUIRE((fewer[i] == rows.data()[i] || (std::isnan(fewer[i]) && std::isnan(rows.data()[i]))));
+            const auto is_same = [](double a, double b) { return a == b || (std::isnan(a) && std::isnan(b)); };
+            REQUIRE(std::equal(fewer.begin(), fewer.end(), rows.data(), is_same));
         }
     }
 

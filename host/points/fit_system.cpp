@@ -11,6 +11,15 @@
 #include "host/refine/steps.h"
 
 namespace lcl {
+
+/// Samples sorted by patch.
+struct SortedSamples {
+    std::vector<PatchPlace> places;
+    std::vector<std::size_t> order;   ///< the samples of patch p stand at starts[p] .. starts[p + 1] - 1
+    std::vector<std::size_t> starts;  ///< patch_count + 1
+    std::vector<Index> patches;       ///< those with samples
+};
+
 namespace {
 
 using Eigen::MatrixXd;
@@ -20,6 +29,7 @@ using Rows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMaj
 constexpr std::size_t smallest_piece = 256;                  // of patches, and of rows that are made of other rows
 constexpr std::size_t block_entries = std::size_t{1} << 20;  // of the matrices of patches that are held at a time
 constexpr Index sample_block = 64;                           // rows of a patch's samples that are multiplied at a time
+constexpr double smallest_part = 1e-9;                       // of a diagonal block's trace, that every direction has at least where the block is inverted
 constexpr std::size_t sum_block = 4096;                      // sums are those of blocks, so that threads do not change them
 
 /// Sums of rows, one at a time.
@@ -120,13 +130,35 @@ double dot(const std::vector<double>& a, const std::vector<double>& b) {
     return sum;
 }
 
-/// Samples sorted by patch.
-struct SortedSamples {
-    std::vector<PatchPlace> places;
-    std::vector<std::size_t> order;   ///< the samples of patch p stand at starts[p] .. starts[p + 1] - 1
-    std::vector<std::size_t> starts;  ///< patch_count + 1
-    std::vector<Index> patches;       ///< those with samples
+/// A symmetric matrix by its six values.
+struct Metric {
+    Eigen::Matrix<double, 1, FitSystem::block> values;  ///< xx, xy, xz, yy, yz, zz
+
+    static Metric of(const Eigen::Matrix3d& m) { return {(Eigen::Matrix<double, 1, 6>() << m(0, 0), m(0, 1), m(0, 2), m(1, 1), m(1, 2), m(2, 2)).finished()}; }
+    Eigen::Matrix3d matrix() const {
+        return (Eigen::Matrix3d() << values[0], values[1], values[2], values[1], values[3], values[4], values[2], values[4], values[5]).finished();
+    }
 };
+
+Metric metric_of(const FitSamples& samples, std::size_t i) {
+    Eigen::Matrix3d metric = Eigen::Matrix3d::Identity();
+    if (samples.normals != nullptr && !std::isnan(samples.normals[3 * i])) {
+        const Eigen::Map<const Eigen::Vector3d> normal(samples.normals + 3 * i);
+        metric = samples.along * metric + (1 - samples.along) * normal * normal.transpose();
+    }
+    return Metric::of(metric / static_cast<double>(samples.places.count));
+}
+
+/// to += the symmetric block times x.
+void multiply_block(const double* values, const double* x, double* to) {
+    to[0] += values[0] * x[0] + values[1] * x[1] + values[2] * x[2];
+    to[1] += values[1] * x[0] + values[3] * x[1] + values[4] * x[2];
+    to[2] += values[2] * x[0] + values[4] * x[1] + values[5] * x[2];
+}
+
+Eigen::Map<const Eigen::Vector3d> point_at(const std::vector<double>& points, Index i) {
+    return Eigen::Map<const Eigen::Vector3d>(&points[3 * static_cast<std::size_t>(i)]);
+}
 
 SortedSamples sort_samples(const PatchTable& table, const Places& places) {
     SortedSamples samples;
@@ -146,11 +178,11 @@ SortedSamples sort_samples(const PatchTable& table, const Places& places) {
 
 }  // namespace
 
-/// What one patch adds to N and B.
+/// What one patch adds to N (or E) and B.
 struct FitSystem::LocalSystem {
     std::vector<Index> vertices;  ///< in ascending order
-    MatrixXd normal;
-    Points right;  ///< no rows: nothing
+    MatrixXd normal;              ///< a column for each vertex, in it a block of numbers for each vertex
+    Points right;                 ///< no rows: nothing
 };
 
 /// A patch's control points over the vertices that they depend on.
@@ -209,10 +241,11 @@ void FitSystem::find_pattern() {
         local.find_vertices(patch, vertices);
         for (const Index vertex : vertices) patches_of[vertex].push_back(patch);
     }
-    normal_ = make_rows(table_.point_count, table_.point_count, [&](Index vertex, RowSum& sum) {
+    pattern_ = make_rows(table_.point_count, table_.point_count, [&](Index vertex, RowSum& sum) {
         for (const Index patch : patches_of[vertex])
             for (Index c = table_.patch_begin[patch]; c < table_.patch_begin[patch + 1]; ++c) sum.add_row(rows_, table_.control[c], 0);
     });
+    pattern_.weights = {};
 }
 
 /// Patches are squares (Loop: triangles) of side 2^-levels of an edge, so second derivatives by edges are 4^levels times those by patches.
@@ -223,51 +256,61 @@ void FitSystem::set_energy() {
     for (const PatchKind& kind : table_.kinds) irregular.push_back(factor * irregular_bending(table_.scheme, kind));
     std::vector<Index> patches(static_cast<std::size_t>(table_.patch_count()));
     for (std::size_t i = 0; i < patches.size(); ++i) patches[i] = static_cast<Index>(i);
-    add(patches, [&](Index patch, LocalRows& rows, LocalSystem& out) {
-        rows.set(patch, out.vertices);
+    energy_.assign(pattern_.indices.size(), 0.0);
+    const auto make = [&](Index patch, LocalRows& local, LocalSystem& out) {
+        local.set(patch, out.vertices);
         const MatrixXd& bending = table_.kind[patch] < 0 ? regular : irregular[table_.kind[patch]];
-        out.normal.noalias() = rows.transfer().transpose() * (bending * rows.transfer());
-    });
-    energy_ = normal_.weights;
+        out.normal.noalias() = local.transfer().transpose() * (bending * local.transfer());
+    };
+    add(patches, make, 1, energy_);
 }
 
-void FitSystem::set_samples(const Places& places, const double* points, const std::array<double, 3>& origin) {
-    const Eigen::RowVector3d centre(origin[0], origin[1], origin[2]);
-    const SortedSamples samples = sort_samples(table_, places);
-    for (std::size_t k = 0; k < normal_.weights.size(); ++k) normal_.weights[k] = energy_.empty() ? 0 : fair_ * energy_[k];
-    std::fill(right_.begin(), right_.end(), 0.0);
-    const double factor = 1 / static_cast<double>(places.count);
-    add(samples.patches, [&](Index patch, LocalRows& local, LocalSystem& out) {
-        local.set(patch, out.vertices);
-        const auto size = static_cast<Index>(out.vertices.size());
-        out.normal.setZero(size, size);
-        out.right.setZero(size, 3);
-        for (std::size_t first = samples.starts[patch]; first < samples.starts[patch + 1]; first += sample_block) {
-            const Index count = static_cast<Index>(std::min<std::size_t>(sample_block, samples.starts[patch + 1] - first));
-            Rows weights(count, patch_rows_.point_count(patch));
-            Points targets(count, 3);
-            for (Index i = 0; i < count; ++i) {
-                const std::size_t sample = samples.order[first + i];
-                patch_rows_.write(samples.places[sample], 1, weights.row(i).data());
-                targets.row(i) = Eigen::Map<const Eigen::RowVector3d>(points + 3 * sample) - centre;
-            }
-            const MatrixXd rows = weights * local.transfer();
-            out.normal.noalias() += factor * rows.transpose() * rows;
-            out.right.noalias() += factor * rows.transpose() * targets;
+void FitSystem::set_samples(const FitSamples& samples) {
+    const SortedSamples sorted = sort_samples(table_, samples.places);
+    normal_.assign(block * pattern_.indices.size(), 0.0);
+    for (std::size_t k = 0; k < energy_.size(); ++k)
+        for (const int diagonal : {0, 3, 5}) normal_[block * k + diagonal] = fair_ * energy_[k];
+    right_.assign(3 * static_cast<std::size_t>(table_.point_count), 0.0);
+    const auto make = [&](Index patch, LocalRows& local, LocalSystem& out) { add_samples(sorted, samples, patch, local, out); };
+    add(sorted.patches, make, block, normal_);
+}
+
+void FitSystem::add_samples(const SortedSamples& sorted, const FitSamples& samples, Index patch, LocalRows& local, LocalSystem& out) const {
+    local.set(patch, out.vertices);
+    const auto size = static_cast<Index>(out.vertices.size());
+    out.normal.setZero(block * size, size);
+    out.right.setZero(size, 3);
+    const Eigen::Vector3d origin(samples.origin[0], samples.origin[1], samples.origin[2]);
+    Rows weights, rows, weighted;
+    Points targets;
+    for (std::size_t first = sorted.starts[patch]; first < sorted.starts[patch + 1]; first += sample_block) {
+        const auto count = static_cast<Index>(std::min<std::size_t>(sample_block, sorted.starts[patch + 1] - first));
+        weights.resize(count, patch_rows_.point_count(patch));
+        for (Index i = 0; i < count; ++i) patch_rows_.write(sorted.places[sorted.order[first + i]], 1, weights.row(i).data());
+        rows.noalias() = weights * local.transfer();
+        weighted.resize(count, block * size);
+        targets.resize(count, 3);
+        for (Index i = 0; i < count; ++i) {
+            const std::size_t sample = sorted.order[first + i];
+            const Metric metric = metric_of(samples, sample);
+            targets.row(i) = metric.matrix() * (Eigen::Map<const Eigen::Vector3d>(samples.points + 3 * sample) - origin);
+            for (Index j = 0; j < size; ++j) weighted.row(i).segment<block>(block * j) = rows(i, j) * metric.values;
         }
-    });
+        out.normal.noalias() += weighted.transpose() * rows;
+        out.right.noalias() += rows.transpose() * targets;
+    }
 }
 
 /// What patches add to N and B, in their order, so that sums do not depend on threads: block by block, first the patches' own matrices, then their sum.
 template <class Make>
-void FitSystem::add(const std::vector<Index>& patches, const Make& make) {
+void FitSystem::add(const std::vector<Index>& patches, const Make& make, std::size_t size, std::vector<double>& values) {
     std::vector<LocalRows> workers;
     std::vector<LocalSystem> systems;
     for (std::size_t first = 0; first < patches.size(); first += systems.size()) {
         std::size_t count = 0, entries = 0;
         for (; first + count < patches.size() && entries < block_entries; ++count) {
             const auto points = static_cast<std::size_t>(patch_rows_.point_count(patches[first + count]));
-            entries += points * points;
+            entries += size * points * points;
         }
         systems.resize(count);
         const std::size_t pieces = piece_count(count, smallest_piece);
@@ -275,18 +318,19 @@ void FitSystem::add(const std::vector<Index>& patches, const Make& make) {
         for_each_piece(count, pieces, [&](std::size_t piece, std::size_t begin, std::size_t end) {
             for (std::size_t i = begin; i < end; ++i) make(patches[first + i], workers[piece], systems[i]);
         });
-        scatter(systems);
+        scatter(systems, size, values);
     }
 }
 
 /// Each thread has its own rows of N and goes through all systems.
-void FitSystem::scatter(const std::vector<LocalSystem>& systems) {
+void FitSystem::scatter(const std::vector<LocalSystem>& systems, std::size_t size, std::vector<double>& values) {
     const auto add_row = [&](const LocalSystem& local, Index i) {
         const Index row = local.vertices[i];
-        std::size_t to = normal_.offsets[row];
-        for (std::size_t j = 0; j < local.vertices.size(); ++j, ++to) {
-            while (normal_.indices[to] != local.vertices[j]) ++to;
-            normal_.weights[to] += local.normal(static_cast<Index>(j), i);
+        const double* from = local.normal.col(i).data();
+        std::size_t to = pattern_.offsets[row];
+        for (const Index vertex : local.vertices) {
+            while (pattern_.indices[to] != vertex) ++to;
+            for (std::size_t c = 0; c < size; ++c) values[size * to + c] += *from++;
         }
         for (Index c = 0; c < 3 && local.right.rows() > 0; ++c) right_[3 * static_cast<std::size_t>(row) + c] += local.right(i, c);
     };
@@ -301,35 +345,51 @@ void FitSystem::scatter(const std::vector<LocalSystem>& systems) {
         smallest_piece);
 }
 
-void FitSystem::multiply(const std::vector<double>& values, const std::vector<double>& x, std::vector<double>& y) const {
+void FitSystem::multiply(const std::vector<double>& x, std::vector<double>& y) const {
     y.resize(x.size());
     parallel_for_each(
         table_.point_count,
         [&](Index row) {
             double sum[3] = {0, 0, 0};
-            for (std::size_t k = normal_.offsets[row]; k < normal_.offsets[row + 1]; ++k)
-                for (std::size_t c = 0; c < 3; ++c) sum[c] += values[k] * x[3 * static_cast<std::size_t>(normal_.indices[k]) + c];
+            for (std::size_t k = pattern_.offsets[row]; k < pattern_.offsets[row + 1]; ++k)
+                multiply_block(&normal_[block * k], &x[3 * static_cast<std::size_t>(pattern_.indices[k])], sum);
             std::copy_n(sum, 3, &y[3 * static_cast<std::size_t>(row)]);
         },
-        smallest_parallel_piece / 16);
+        smallest_parallel_piece / 32);
+}
+
+/// Of each row's diagonal block; zeros where there is nothing.
+std::vector<double> FitSystem::inverse_diagonal() const {
+    std::vector<double> inverse(block * static_cast<std::size_t>(table_.point_count), 0.0);
+    parallel_for_each(table_.point_count, [&](Index row) {
+        const auto begin = pattern_.indices.begin() + static_cast<std::ptrdiff_t>(pattern_.offsets[row]),
+                   end = pattern_.indices.begin() + static_cast<std::ptrdiff_t>(pattern_.offsets[row + 1]), at = std::lower_bound(begin, end, row);
+        if (at == end) return;  // isolated
+        const Metric diagonal{Eigen::Map<const Eigen::Matrix<double, 1, block>>(&normal_[block * static_cast<std::size_t>(at - pattern_.indices.begin())])};
+        Eigen::Matrix3d matrix = diagonal.matrix();
+        if (!(matrix.trace() > 0)) return;
+        matrix += smallest_part * matrix.trace() * Eigen::Matrix3d::Identity();
+        const Metric result = Metric::of(matrix.inverse());
+        std::copy_n(result.values.data(), block, &inverse[block * static_cast<std::size_t>(row)]);
+    });
+    return inverse;
 }
 
 int FitSystem::solve(std::vector<double>& control, double tolerance, int most_iterations) const {
-    std::vector<double> inverse(control.size(), 0.0), residual, conditioned(control.size()), direction(control.size(), 0.0), product;
-    for (Index row = 0; row < table_.point_count; ++row)
-        for (std::size_t k = normal_.offsets[row]; k < normal_.offsets[row + 1]; ++k)
-            if (normal_.indices[k] == row && normal_.weights[k] > 0) std::fill_n(&inverse[3 * static_cast<std::size_t>(row)], 3, 1 / normal_.weights[k]);
-    multiply(normal_.weights, control, residual);
+    const std::vector<double> inverse = inverse_diagonal();
+    std::vector<double> residual, conditioned(control.size()), direction(control.size(), 0.0), product;
+    multiply(control, residual);
     for (std::size_t i = 0; i < residual.size(); ++i) residual[i] = right_[i] - residual[i];
     double first = -1, before = 0;
     for (int iteration = 0;; ++iteration) {
-        for (std::size_t i = 0; i < residual.size(); ++i) conditioned[i] = inverse[i] * residual[i];
+        std::fill(conditioned.begin(), conditioned.end(), 0.0);
+        for (std::size_t v = 0; 3 * v < residual.size(); ++v) multiply_block(&inverse[block * v], &residual[3 * v], &conditioned[3 * v]);
         const double now = dot(residual, conditioned);
         if (first < 0) first = now;
         if (iteration == most_iterations || !(now > tolerance * tolerance * first)) return iteration;
         for (std::size_t i = 0; i < residual.size(); ++i) direction[i] = conditioned[i] + (iteration > 0 ? now / before : 0) * direction[i];
         before = now;
-        multiply(normal_.weights, direction, product);
+        multiply(direction, product);
         const double curvature = dot(direction, product);
         if (!(curvature > 0)) return iteration;  // rounding: what is left lies in the null space
         for (std::size_t i = 0; i < residual.size(); ++i) {
@@ -340,10 +400,11 @@ int FitSystem::solve(std::vector<double>& control, double tolerance, int most_it
 }
 
 double FitSystem::energy(const std::vector<double>& control) const {
-    if (energy_.empty()) return 0;
-    std::vector<double> product;
-    multiply(energy_, control, product);
-    return dot(control, product);
+    double sum = 0;
+    for (Index row = 0; !energy_.empty() && row < table_.point_count; ++row)
+        for (std::size_t k = pattern_.offsets[row]; k < pattern_.offsets[row + 1]; ++k)
+            sum += energy_[k] * point_at(control, row).dot(point_at(control, pattern_.indices[k]));
+    return sum;
 }
 
 }  // namespace lcl

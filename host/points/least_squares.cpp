@@ -5,6 +5,7 @@
 #include <array>
 #include <chrono>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "host/error.h"
@@ -16,7 +17,10 @@ namespace {
 
 constexpr double smallest_change = 1e-3;  // of the root mean square, in a correction
 constexpr double solve_tolerance = 1e-4;  // of what the residual is where a correction begins: the next one goes on from there
-constexpr int most_iterations = 500;      // of conjugate gradients in a correction
+constexpr int most_iterations = 200;      // of conjugate gradients in a correction
+
+// Weight of distances along the surface: where it begins and how it goes down. At 1e-6 what is left to do shrinks by about that factor in a correction.
+constexpr double first_along = 1e-2, smallest_along = 1e-6, along_factor = 0.1;
 
 class Stopwatch {
 public:
@@ -30,16 +34,19 @@ private:
     std::chrono::steady_clock::time_point start_;
 };
 
-/// A surface that was measured.
+/// A surface that was measured: its closest points.
 struct Candidate {
-    std::vector<double> control, distances;
+    std::vector<double> control, distances, uv, normals;
+    std::vector<Index> faces, corners;
     double rms = 0, objective = 0;  ///< sum of both terms
+
+    Places places() const { return {distances.size(), faces.data(), corners.data(), uv.data()}; }
 };
 
 class Fit {
 public:
     Fit(DeviceSurface& surface, const std::vector<double>& points, const LeastSquaresOptions& options)
-        : surface_(surface), points_(points), options_(options), faces_(count()), corners_(count()), uv_(2 * count()) {}
+        : surface_(surface), points_(points), options_(options), closest_(points.size()) {}
 
     LeastSquaresFit run(std::vector<double> control) {
         surface_.set_points(control.data(), 3);
@@ -59,51 +66,67 @@ public:
     }
 
 private:
-    std::size_t count() const { return points_.size() / 3; }
-    Places places() const { return {count(), faces_.data(), corners_.data(), uv_.data()}; }
-
-    /// Until the objective, which both halves of a correction lower, does so no more, or the root mean square hardly changes.
+    /// As in the method of Levenberg and Marquardt distances along the surface get a weight: less after steps that lower the objective, which then goes down as
+    /// fast as by Gauss and Newton, and more after others, up to 1, where every step lowers it.
     void correct() {
+        double along = first_along;
         while (result_.corrections < options_.max_corrections) {
             if (options_.progress && !options_.progress(result_.corrections, *std::max_element(best_.distances.begin(), best_.distances.end())))
                 throw Cancelled("the least-squares fit was cancelled after " + std::to_string(result_.corrections) + " corrections");
             Candidate next;
-            next.control = solve();
+            next.control = solve(along);
             surface_.set_points(next.control.data(), 3);
-            const Places start = places();
-            measure(next, &start);
+            measure(next, &best_);
             ++result_.corrections;
-            if (!(next.objective < best_.objective)) return;
-            const double change = std::abs(next.rms - best_.rms);
-            best_ = std::move(next);
-            if (change < smallest_change * best_.rms) return;
+            if (next.objective < best_.objective) {
+                const double change = std::abs(next.rms - best_.rms);
+                std::swap(best_, next);
+                if (change < smallest_change * next.rms) return;
+                along = std::max(smallest_along, along * along_factor);
+            } else {
+                if (along >= 1) return;
+                along = std::min(1.0, along / (along_factor * along_factor));
+            }
         }
     }
 
-    std::vector<double> solve() {
+    std::vector<double> solve(double along) {
         const Stopwatch watch(result_.seconds_solve);
-        system_->set_samples(places(), points_.data(), origin_);
+        system_->set_samples({best_.places(), points_.data(), best_.normals.data(), along, origin_});
         std::vector<double> control = seen_from_origin(best_.control, -1);
         result_.iterations += system_->solve(control, solve_tolerance, most_iterations);
         return seen_from_origin(std::move(control), 1);
     }
 
-    /// Closest points and what they say of the surface's points of now.
-    void measure(Candidate& candidate, const Places* start) {
+    /// Closest points and what they say of the surface's points of now; near those of `start`, or anywhere.
+    void measure(Candidate& candidate, const Candidate* start) {
         const Stopwatch watch(result_.seconds_measure);
-        candidate.distances.resize(count());
-        ClosestPoints out;
-        out.faces = faces_.data(), out.corners = corners_.data(), out.uv = uv_.data(), out.distances = candidate.distances.data();
+        const std::size_t count = points_.size() / 3;
+        candidate.faces.resize(count);
+        candidate.corners.resize(count);
+        candidate.uv.resize(2 * count);
+        candidate.normals.resize(3 * count);
+        candidate.distances.resize(count);
+        const ClosestPoints out{candidate.faces.data(), candidate.corners.data(), candidate.uv.data(),
+                                closest_.data(),        candidate.normals.data(), candidate.distances.data()};
         if (start == nullptr) search_ = std::make_unique<ClosestSearch>(surface_);
-        search_->find(points_.data(), 3, count(), out, start);
+        const Places places = start != nullptr ? start->places() : Places{};
+        search_->find(points_.data(), 3, count, out, start != nullptr ? &places : nullptr);
         double sum = 0;
-        for (double& distance : candidate.distances) {
-            distance = std::abs(distance);
-            sum += distance * distance;
-        }
-        const double mean = sum / static_cast<double>(count());
-        candidate.rms = std::sqrt(mean);
-        candidate.objective = mean + options_.fair * system_->energy(seen_from_origin(candidate.control, -1));
+        for (std::size_t i = 0; i < count; ++i) sum += settle(candidate, i);
+        candidate.rms = std::sqrt(sum / static_cast<double>(count));
+        candidate.objective = sum / static_cast<double>(count) + options_.fair * system_->energy(seen_from_origin(candidate.control, -1));
+    }
+
+    /// Takes the sign off a distance, and the normal from a point whose way to the surface is not along it: that lies beyond the boundary, where the surface
+    /// would slide away from it. Returns the square of the distance.
+    double settle(Candidate& candidate, std::size_t i) const {
+        double& distance = candidate.distances[i];
+        distance = std::abs(distance);
+        double along_normal = 0;
+        for (std::size_t c = 0; c < 3; ++c) along_normal += candidate.normals[3 * i + c] * (points_[3 * i + c] - closest_[3 * i + c]);
+        if (std::abs(along_normal) < 0.9 * distance && distance > 1e-6 * surface_.size()) candidate.normals[3 * i] = std::numeric_limits<double>::quiet_NaN();
+        return distance * distance;
     }
 
     std::vector<double> seen_from_origin(std::vector<double> points, double sign) const {
@@ -114,8 +137,7 @@ private:
     DeviceSurface& surface_;
     const std::vector<double>& points_;
     const LeastSquaresOptions& options_;
-    std::vector<Index> faces_, corners_;  ///< of the points' places
-    std::vector<double> uv_;
+    std::vector<double> closest_;
     std::array<double, 3> origin_{};
     std::unique_ptr<FitSystem> system_;
     std::unique_ptr<ClosestSearch> search_;
