@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <cmath>
 #include <optional>
 
 #include "host/cli/commands.h"
@@ -141,6 +142,7 @@ Fitted fit_surface(Job& job, lcl_context context, lcl_cloud cloud, const Engine&
     if (fitted.status == LCL_ERROR_BAD_INPUT) check_of_input(job, fitted.status);
     if (fitted.status != LCL_OK && !is_result(fitted.status)) throw failure_of(fitted.status);
     summary.tolerance = job.options.fit_tolerance * summary.report.diagonal;
+    if (!fitted.mesh) summary.report.rms = summary.report.p95 = summary.report.max = std::nan("");  // a solve that failed: nothing was measured
     job.report.fit = summary;
     return fitted;
 }
