@@ -152,7 +152,8 @@ void say_fit(Job& job, const Engine& engine) {
     const auto part = [](long long count, const char* one, const char* many) { return count > 0 ? "; " + counted(count, one, many) : std::string(); };
     job.terminal.say("points", counted(fit.point_count, "point measured", "points measured") +
                                    part(fit.duplicate_count, "duplicate dropped", "duplicates dropped") +
-                                   part(fit.left_out_count, "outlier left out", "outliers left out"));
+                                   part(fit.left_out_count, "outlier left out", "outliers left out") +
+                                   part(fit.unused_count, "of them no vertex of the first mesh", "of them no vertices of the first mesh"));
     job.terminal.say("engine", engine.name + ": " + counted(fit.approximation_vertices, "vertex", "vertices") + ", " +
                                    counted(fit.approximation_faces, "face", "faces") + ", " + counted(fit.components, "component", "components") + ", " +
                                    (fit.boundary_loops == 0 ? "closed" : counted(fit.boundary_loops, "boundary loop", "boundary loops")) +
