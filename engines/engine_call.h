@@ -24,7 +24,8 @@ namespace limitcl_engine {
 
 constexpr double no_limit = std::numeric_limits<double>::infinity();
 
-enum class Kind { number, whole, list };
+/// zero_or_whole: 0 turns the option off or leaves the choice to the engine, and is outside the range.
+enum class Kind { number, whole, zero_or_whole, list };
 
 struct Option {
     const char* key;
@@ -50,9 +51,18 @@ inline std::string number_text(double value) {
 
 /// "a number from 0 to 1"
 inline std::string range_text(const Option& option) {
-    const char* what = option.kind == Kind::whole ? "a whole number" : option.kind == Kind::list ? "numbers with commas between, each" : "a number";
+    std::string text = "a number";
+    if (option.kind == Kind::whole) text = "a whole number";
+    if (option.kind == Kind::zero_or_whole) text = "0 or a whole number";
+    if (option.kind == Kind::list) text = "numbers with commas between, each";
     const std::string least = number_text(option.least);
-    return std::string(what) + (option.most == no_limit ? ", " + least + " or more" : " from " + least + " to " + number_text(option.most));
+    return text + (option.most == no_limit ? ", " + least + " or more" : " from " + least + " to " + number_text(option.most));
+}
+
+inline bool is_in_range(const Option& option, double value) {
+    if (option.kind == Kind::zero_or_whole && value == 0.0) return true;
+    if ((option.kind == Kind::whole || option.kind == Kind::zero_or_whole) && value != std::floor(value)) return false;
+    return value >= option.least && value <= option.most;
 }
 
 /// The options by their keys: defaults, then what was given.
@@ -89,7 +99,7 @@ private:
         for (const char* at = text; good; ++at) {
             double value = 0.0;
             const auto [rest, error] = std::from_chars(at, end, value);
-            good = error == std::errc() && value >= option.least && value <= option.most && (option.kind != Kind::whole || value == std::floor(value));
+            good = error == std::errc() && is_in_range(option, value);
             values.push_back(value);
             at = rest;
             if (at == end) break;
@@ -137,26 +147,34 @@ struct Frame {
     double from(double value, int axis) const { return value / scale + middle[axis]; }
 };
 
-/// One run of an engine.
-struct Call {
+using Triangle = std::array<std::int32_t, 3>;
+
+/// One run of an engine. What it gives has at least one triangle.
+class Call {
+public:
+    Call(const lcl_engine_points& in, const Options& values, const lcl_engine_sink& out) : points(in), options(values), sink_(out) {}
+
     const lcl_engine_points& points;
     const Options& options;
-    const lcl_engine_sink& sink;
 
     /// Throws Cancelled where the caller wants no more.
     void progress(double fraction) const {
-        if (!sink.progress(sink.self, fraction)) throw Cancelled();
+        if (!sink_.progress(sink_.self, fraction)) throw Cancelled();
     }
-    void give(const std::vector<double>& vertices, const std::vector<std::int32_t>& triangles) const {
-        sink.give(sink.self, static_cast<std::int32_t>(vertices.size() / 3), vertices.data(), static_cast<std::int32_t>(triangles.size() / 3),
-                  triangles.data());
+    void give(const std::vector<double>& vertices, const std::vector<Triangle>& triangles) const {
+        give(vertices.data(), static_cast<std::int32_t>(vertices.size() / 3), triangles);
     }
     /// Triangles between the points that came in.
-    void give(const std::vector<std::int32_t>& triangles) const {
-        sink.give(sink.self, points.count, nullptr, static_cast<std::int32_t>(triangles.size() / 3), triangles.data());
-    }
+    void give(const std::vector<Triangle>& triangles) const { give(nullptr, points.count, triangles); }
     void leave_out(const std::vector<std::int32_t>& indices) const {
-        if (!indices.empty()) sink.leave_out(sink.self, static_cast<std::int32_t>(indices.size()), indices.data());
+        if (!indices.empty()) sink_.leave_out(sink_.self, static_cast<std::int32_t>(indices.size()), indices.data());
+    }
+
+private:
+    const lcl_engine_sink& sink_;
+
+    void give(const double* vertices, std::int32_t vertex_count, const std::vector<Triangle>& triangles) const {
+        sink_.give(sink_.self, vertex_count, vertices, static_cast<std::int32_t>(triangles.size()), triangles.front().data());
     }
 };
 
@@ -181,7 +199,7 @@ std::int32_t run_engine(const lcl_engine_points& points, const Option (&table)[C
     };
     try {
         const Options options(table, given, given_count);
-        run(Call{points, options, sink});
+        run(Call(points, options, sink));
         return LCL_ENGINE_OK;
     } catch (const Cancelled&) {
         return LCL_ENGINE_CANCELLED;

@@ -28,6 +28,7 @@ struct Release {
     void operator()(lcl_tangents handle) const { lcl_tangents_release(handle); }
     void operator()(lcl_limit_surface handle) const { lcl_limit_surface_release(handle); }
     void operator()(lcl_samples handle) const { lcl_samples_release(handle); }
+    void operator()(lcl_cloud handle) const { lcl_cloud_release(handle); }
 };
 template <class Raw>
 using Owned = std::unique_ptr<std::remove_pointer_t<Raw>, Release>;

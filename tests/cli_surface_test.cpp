@@ -3,10 +3,9 @@
 #include <limits>
 #include <map>
 
-#include <zlib.h>
-
 #include "tests/capi_support.h"
 #include "tests/cli_support.h"
+#include "tests/compressed.h"
 
 using namespace cli_test;
 
@@ -63,21 +62,6 @@ bool same(const std::vector<double>& a, const std::vector<double>& b, double tol
     for (std::size_t i = 0; i < a.size(); ++i)
         if (std::isnan(a[i]) != std::isnan(b[i]) || std::abs(a[i] - b[i]) > tolerance) return false;
     return true;
-}
-
-std::string compressed(const std::string& text) {
-    z_stream stream{};
-    REQUIRE(deflateInit2(&stream, Z_DEFAULT_COMPRESSION, Z_DEFLATED, 15 + 16, 8, Z_DEFAULT_STRATEGY) == Z_OK);
-    std::string out(text.size() + 1000, '\0');
-    std::string in = text;
-    stream.next_in = reinterpret_cast<Bytef*>(in.data());
-    stream.avail_in = static_cast<uInt>(in.size());
-    stream.next_out = reinterpret_cast<Bytef*>(out.data());
-    stream.avail_out = static_cast<uInt>(out.size());
-    REQUIRE(deflate(&stream, Z_FINISH) == Z_STREAM_END);
-    out.resize(stream.total_out);
-    deflateEnd(&stream);
-    return out;
 }
 
 }  // namespace
@@ -212,8 +196,8 @@ TEST_CASE("closest takes points from every format and gives the values of the C 
     const Folder folder;
     folder.file("cube.obj", cube);
     const std::vector<double> points{0, 0, 2, 0.125, 0.25, 0.5, -3, 1, 0.75};
-    folder.file("p.xyz", "# x y z and more\n0 0 2 9 9\n\n0.125 0.25 0.5\n-3\t1 0.75 1\n");
-    folder.file("p.pts", "3\n0 0 2\n0.125 0.25 0.5 128\n-3 1 0.75\n");
+    folder.file("p.xyz", "# x y z and more\n0 0 2 9 9\n\n0.125 0.25 0.5 1 7\n-3\t1 0.75 1 0\n");
+    folder.file("p.pts", "3\n0 0 2 7\n0.125 0.25 0.5 128\n-3 1 0.75 9\n");
     folder.file("p.csv", "id,z,y,x\n1,2,0,0\n2,0.5,0.25,0.125\n3,0.75,1,-3\n");
     folder.file("p.obj", "v 0 0 2\nv 0.125 0.25 0.5\nv -3 1 0.75\n");
     folder.file("p.off", "OFF\n3 0 0\n0 0 2\n0.125 0.25 0.5\n-3 1 0.75\n");
@@ -260,9 +244,10 @@ TEST_CASE("points that cannot be read are exit code 3", "[cli][closest][exit]") 
     };
     for (const auto& [name, text, part] :
          {Bad{"a.xyz", "0 0 1\n0 nan 1\n", "a.xyz:2:"}, Bad{"b.xyz", "0 0\n", "b.xyz:1:"}, Bad{"c.xyz", "0 0 x\n", "c.xyz:1:"},
-          Bad{"d.pts", "2\n0 0 1\n", "2 points"}, Bad{"e.pts", "0 0 1\n0 0 2\n", "e.pts:1:"}, Bad{"f.csv", "x,y\n0,0\n", "column z"},
-          Bad{"g.csv", "x,y,z\n0,0\n", "g.csv:2:"}, Bad{"h.csv", "x,y,z\n0,inf,0\n", "h.csv:2:"}, Bad{"i.csv", "", "i.csv:1:"},
-          Bad{"j.obj", "v 0 0 1\nv nan 0 0\n", "j.obj"}, Bad{"k.pts", "", "k.pts"}, Bad{"l.xyz.gz", compressed("0 0 1\n").substr(0, 12), "l.xyz.gz"}}) {
+          Bad{"d.pts", "2\n0 0 1\n", "d.pts:1: the first line says 2 points, 1 line follows"}, Bad{"e.pts", "0 0 1\n0 0 2\n", "e.pts:1:"},
+          Bad{"f.csv", "x,y\n0,0\n", "column z"}, Bad{"g.csv", "x,y,z\n0,0\n", "g.csv:2:"}, Bad{"h.csv", "x,y,z\n0,inf,0\n", "h.csv:2:"},
+          Bad{"i.csv", "", "i.csv is empty"}, Bad{"m.xyz", "0 0 1\n0 0 1 7\n", "m.xyz:2: mixed columns"}, Bad{"j.obj", "v 0 0 1\nv nan 0 0\n", "j.obj"},
+          Bad{"k.pts", "", "k.pts"}, Bad{"l.xyz.gz", compressed("0 0 1\n").substr(0, 12), "l.xyz.gz"}}) {
         folder.file(name, text);
         const Outcome outcome = run(folder, "closest cube.obj -o out.csv --points " + name);
         INFO(name << outcome.err);
@@ -272,6 +257,6 @@ TEST_CASE("points that cannot be read are exit code 3", "[cli][closest][exit]") 
     CHECK(run(folder, "closest cube.obj -o out.csv --points nowhere.xyz").exit_code == 3);
     CHECK(run(folder, "closest cube.obj -o out.csv --points nowhere.ply").exit_code == 3);
     CHECK_FALSE(folder.has("out.csv"));
-    folder.file("none.xyz", "");
+    folder.file("none.xyz", "# no points\n");
     CHECK(run(folder, "closest cube.obj -o - --quiet --points none.xyz").out == closest_columns + "\n");
 }

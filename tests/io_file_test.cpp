@@ -29,23 +29,6 @@ void write_patch(const std::string& path) {
     lcl::write_mesh(path, file_of(awkward_patch()), FileFormat::by_ending, warnings);
 }
 
-/// Standard input or output from or to a file, as long as it lives.
-class Redirection {
-public:
-    Redirection(int descriptor, const std::string& path, const char* mode) : descriptor_(descriptor), saved_(::dup(descriptor)) {
-        std::FILE* file = std::fopen(path.c_str(), mode);
-        ::dup2(::fileno(file), descriptor);
-        std::fclose(file);
-    }
-    ~Redirection() {
-        ::dup2(saved_, descriptor_);
-        ::close(saved_);
-    }
-
-private:
-    int descriptor_, saved_;
-};
-
 }  // namespace
 
 TEST_CASE("endings name the format in any case", "[io][file]") {
@@ -74,12 +57,12 @@ TEST_CASE("files that are missing, folders or empty are refused in words", "[io]
     const auto error = [&](const std::string& name) { return error_of<lcl::FileError>([&] { lcl::read_mesh(folder.file(name)); }); };
     CHECK(error("none.obj") == "cannot read " + folder.file("none.obj") + ": No such file or directory");
     std::filesystem::create_directory(folder.file("folder.obj"));
-    CHECK(error("folder.obj") == folder.file("folder.obj") + " is a directory; name a mesh file in it");
+    CHECK(error("folder.obj") == folder.file("folder.obj") + " is a directory; name a file in it");
     for (const char* name : {"a.obj", "a.off", "a.ply", "a.stl", "a.om", "a.obj.gz"}) {
         write_bytes(folder.file(name), "");
         CHECK(error_of<lcl::BadInput>([&] { lcl::read_mesh(folder.file(name)); }) == folder.file(name) + " is empty; it holds no mesh");
     }
-    CHECK(contains(error_of<lcl::InvalidArgument>([&] { lcl::read_mesh(folder.file("a.xyz")); }), "names no mesh format"));
+    CHECK(contains(error_of<lcl::InvalidArgument>([&] { lcl::read_mesh(folder.file("a.abc")); }), "names no mesh format"));
 }
 
 TEST_CASE("files that may not be read or replaced are refused in words", "[io][file]") {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cmath>
+#include <cstdio>
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
@@ -12,6 +13,8 @@
 #include <stdexcept>
 #include <string>
 #include <vector>
+
+#include <unistd.h>
 
 #include "host/io/mesh_file.h"
 
@@ -36,6 +39,23 @@ public:
 
 private:
     std::filesystem::path path_;
+};
+
+/// Standard input or output from or to a file, as long as it lives.
+class Redirection {
+public:
+    Redirection(int descriptor, const std::string& path, const char* mode) : descriptor_(descriptor), saved_(::dup(descriptor)) {
+        std::FILE* file = std::fopen(path.c_str(), mode);
+        ::dup2(::fileno(file), descriptor);
+        std::fclose(file);
+    }
+    ~Redirection() {
+        ::dup2(saved_, descriptor_);
+        ::close(saved_);
+    }
+
+private:
+    int descriptor_, saved_;
 };
 
 inline std::string file_bytes(const std::string& path) {

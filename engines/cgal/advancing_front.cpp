@@ -4,6 +4,7 @@
 #include <CGAL/Advancing_front_surface_reconstruction.h>
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/Spatial_sort_traits_adapter_3.h>
+#include <CGAL/Unique_hash_map.h>
 #include <CGAL/compute_average_spacing.h>
 #include <CGAL/jet_smooth_point_set.h>
 #include <CGAL/property_map.h>
@@ -29,6 +30,7 @@ using limitcl_engine::Frame;
 using limitcl_engine::Kind;
 using limitcl_engine::no_limit;
 using limitcl_engine::Option;
+using limitcl_engine::Triangle;
 
 using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 using Point = Kernel::Point_3;
@@ -45,8 +47,8 @@ const Option options[] = {
     {"outlier-distance", "0", Kind::number, 0.0, no_limit,
      "leave out only points whose neighbours are so many times farther away than is usual (0: as `outliers` says alone)"},
     {"outlier-neighbours", "24", Kind::whole, 2.0, 1000.0, "how many neighbours that looks at"},
-    {"smooth", "0", Kind::whole, 0.0, 1000.0,
-     "against noise: each point moves to a quadric through so many neighbours, 6 or more (0: none; later distances are to the points as they were)"}};
+    {"smooth", "0", Kind::zero_or_whole, 6.0, 1000.0,
+     "against noise: each point moves to a quadric through so many neighbours (0: none); distances are then to the points as they were"}};
 
 /// Shares of the whole time, roughly, for the progress: measured on clouds of 100k points.
 struct Share {
@@ -88,8 +90,6 @@ void remove_outliers(const Call& call, const std::vector<Point>& points, std::ve
 bool smooth(const Call& call, std::vector<Point>& points, const std::vector<std::size_t>& kept) {
     const int neighbours = call.options.whole("smooth");
     if (neighbours == 0) return false;
-    if (neighbours < 6)
-        throw Failure{LCL_ENGINE_OPTION, "the engine's option smooth=" + std::to_string(neighbours) + ": a quadric takes 6 neighbours or more; 0: none"};
     if (kept.size() < 7) throw Failure{LCL_ENGINE_OPTION, "the engine's option smooth takes 7 points or more"};
     std::vector<Point> moved;
     for (const std::size_t index : kept) moved.push_back(points[index]);
@@ -97,6 +97,21 @@ bool smooth(const Call& call, std::vector<Point>& points, const std::vector<std:
                                                      callback(call, smooth_share));
     for (std::size_t i = 0; i < kept.size(); ++i) points[kept[i]] = moved[i];
     return true;
+}
+
+/// A number in [0, 1) that hangs on this one alone (splitmix64).
+double scattered(std::uint64_t value) {
+    value += 0x9e3779b97f4a7c15u;
+    value = (value ^ (value >> 30)) * 0xbf58476d1ce4e5b9u;
+    value = (value ^ (value >> 27)) * 0x94d049bb133111ebu;
+    return std::ldexp(static_cast<double>((value ^ (value >> 31)) >> 11), -53);
+}
+
+/// The point moved by less than 2e-9 of a spacing. Grids and planes are full of equal radii and angles, which CGAL takes in the order of addresses, another one
+/// in every run; and of points on one plane or sphere, which cost it twice the time.
+Point disturbed(const Point& point, std::size_t index) {
+    const auto by = [index](std::uint64_t axis) { return 1e-9 * scattered(3 * std::uint64_t(index) + axis); };
+    return {point.x() + by(0), point.y() + by(1), point.z() + by(2)};
 }
 
 /// The tetrahedra, whose vertices carry the indices of their points. Inserted along a curve through space, so that each point is near the one before.
@@ -107,18 +122,11 @@ Delaunay triangulate(const Call& call, const std::vector<Point>& points, std::ve
     Delaunay::Vertex_handle last;
     for (std::size_t done = 0; done < order.size(); ++done) {
         if (done % 4096 == 0) report(call, delaunay_share, static_cast<double>(done) / static_cast<double>(order.size()));
-        last = delaunay.insert(points[order[done]], last == Delaunay::Vertex_handle() ? Delaunay::Cell_handle() : last->cell());
+        const Point point = disturbed(points[order[done]], order[done]);
+        last = delaunay.insert(point, last == Delaunay::Vertex_handle() ? Delaunay::Cell_handle() : last->cell());
         last->id() = order[done];
     }
     return delaunay;
-}
-
-/// Spreads the bits of a number (splitmix64).
-std::uint64_t mixed(std::uint64_t value) {
-    value += 0x9e3779b97f4a7c15u;
-    value = (value ^ (value >> 30)) * 0xbf58476d1ce4e5b9u;
-    value = (value ^ (value >> 27)) * 0x94d049bb133111ebu;
-    return value ^ (value >> 31);
 }
 
 /// How soon a triangle may be taken: CGAL's own measure, without those that are too large. The front asks for it all the time, so it also tells the progress.
@@ -129,11 +137,9 @@ public:
     template <typename Front, typename Cell>
     double operator()(const Front& front, Cell& cell, int index) const {
         if (++asked_ % 16384 == 0) report(*call_, front_share, front.number_of_facets() / (2.0 * static_cast<double>(point_count_)));
-        const auto *a = &*cell->vertex((index + 1) & 3), *b = &*cell->vertex((index + 2) & 3), *c = &*cell->vertex((index + 3) & 3);
-        if (perimeter_bound_ > 0.0 && perimeter(a->point(), b->point(), c->point()) > perimeter_bound_) return front.infinity();
-        // Equal radii, as on a grid, are taken in the order of addresses: a last digit that hangs on the vertices alone makes every run the same.
-        const std::uint64_t bits = mixed(a->id()) + mixed(b->id()) + mixed(c->id());
-        return front.smallest_radius_delaunay_sphere(cell, index) * (1.0 + 1e-10 * std::ldexp(static_cast<double>(bits >> 11), -53));
+        const Point &a = cell->vertex((index + 1) & 3)->point(), &b = cell->vertex((index + 2) & 3)->point(), &c = cell->vertex((index + 3) & 3)->point();
+        if (perimeter_bound_ > 0.0 && perimeter(a, b, c) > perimeter_bound_) return front.infinity();
+        return front.smallest_radius_delaunay_sphere(cell, index);
     }
 
 private:
@@ -147,17 +153,78 @@ private:
     mutable std::uint64_t asked_ = 0;
 };
 
-std::vector<std::int32_t> grow(const Call& call, Delaunay& delaunay, double perimeter_bound) {
+/// A triangle from its least corner on, and the number of the part of the surface that it is in.
+struct Face {
+    Triangle corners;
+    int part;
+
+    /// The same for both orientations.
+    Triangle key() const { return {corners[0], std::min(corners[1], corners[2]), std::max(corners[1], corners[2])}; }
+    bool operator<(const Face& other) const { return key() < other.key(); }
+};
+
+/// CGAL has the triangles in the order of addresses: here they come by their corners. Parts hang together over edges.
+template <typename Surface>
+std::vector<Face> faces_of(const Surface& surface) {
+    using Handle = typename Surface::Face_handle;
+    std::vector<Face> faces;
+    CGAL::Unique_hash_map<Handle, int> parts(-1);
+    int part_count = 0;
+    std::vector<Handle> pending;
+    for (auto first = surface.faces_begin(); first != surface.faces_end(); ++first) {
+        if (!first->is_on_surface() || parts[first] >= 0) continue;
+        parts[first] = part_count;
+        for (pending = {first}; !pending.empty();) {
+            const Handle face = pending.back();
+            pending.pop_back();
+            Triangle triangle;
+            for (int corner = 0; corner < 3; ++corner) triangle[corner] = static_cast<std::int32_t>(face->vertex(corner)->vertex_3()->id());
+            std::rotate(triangle.begin(), std::min_element(triangle.begin(), triangle.end()), triangle.end());
+            faces.push_back({triangle, part_count});
+            for (int side = 0; side < 3; ++side) {
+                const Handle next = face->neighbor(side);
+                if (!next->is_on_surface() || parts[next] >= 0) continue;
+                parts[next] = part_count;
+                pending.push_back(next);
+            }
+        }
+        ++part_count;
+    }
+    std::sort(faces.begin(), faces.end());
+    return faces;
+}
+
+/// Turns each part so that the volume between its triangles and its middle is positive: closed ones outwards. The library leaves it to chance.
+std::vector<Triangle> oriented(const std::vector<Face>& faces, const std::vector<Point>& points) {
+    struct Part {
+        double count = 0.0, volume = 0.0;
+        Kernel::Vector_3 sum = CGAL::NULL_VECTOR;
+    };
+    std::vector<Part> parts;
+    const auto part_of = [&parts](const Face& face) -> Part& { return parts[static_cast<std::size_t>(face.part)]; };
+    for (const Face& face : faces) {
+        parts.resize(std::max(parts.size(), static_cast<std::size_t>(face.part) + 1));
+        for (const std::int32_t corner : face.corners) part_of(face).sum += points[corner] - CGAL::ORIGIN;
+        part_of(face).count += 3.0;
+    }
+    for (const Face& face : faces) {
+        const Point middle = CGAL::ORIGIN + part_of(face).sum / part_of(face).count;
+        part_of(face).volume += (points[face.corners[0]] - middle) * CGAL::cross_product(points[face.corners[1]] - middle, points[face.corners[2]] - middle);
+    }
+    std::vector<Triangle> triangles;
+    triangles.reserve(faces.size());
+    for (const Face& face : faces) {
+        const Triangle& t = face.corners;
+        triangles.push_back(part_of(face).volume < 0.0 ? Triangle{t[0], t[2], t[1]} : t);
+    }
+    return triangles;
+}
+
+std::vector<Triangle> grow(const Call& call, const std::vector<Point>& points, Delaunay delaunay, double perimeter_bound) {
     using Front = CGAL::Advancing_front_surface_reconstruction<Delaunay, Priority>;
     Front front(delaunay, Priority(call, perimeter_bound, delaunay.number_of_vertices()));
     front.run(5.0, call.options.number("beta"));
-    std::vector<std::int32_t> triangles;
-    const auto& surface = front.triangulation_data_structure_2();
-    for (auto face = surface.faces_begin(); face != surface.faces_end(); ++face) {
-        if (!face->is_on_surface()) continue;
-        for (int corner = 0; corner < 3; ++corner) triangles.push_back(static_cast<std::int32_t>(face->vertex(corner)->vertex_3()->id()));
-    }
-    return triangles;
+    return oriented(faces_of(front.triangulation_data_structure_2()), points);
 }
 
 void approximate(const Call& call) {
@@ -174,8 +241,8 @@ void approximate(const Call& call) {
     remove_outliers(call, points, kept);
     const bool moved = smooth(call, points, kept);
 
-    Delaunay delaunay = triangulate(call, points, std::move(kept));
-    const std::vector<std::int32_t> triangles = grow(call, delaunay, call.options.number("perimeter-bound") * frame.scale);
+    const double perimeter_bound = call.options.number("perimeter-bound") * frame.scale;
+    const std::vector<Triangle> triangles = grow(call, points, triangulate(call, points, std::move(kept)), perimeter_bound);
     if (triangles.empty())
         throw Failure{LCL_ENGINE_FAILED, "CGAL's advancing front finds no triangle: the points lie on a line, or perimeter-bound is too small"};
     if (!moved) return call.give(triangles);

@@ -31,18 +31,20 @@ using limitcl_engine::Frame;
 using limitcl_engine::Kind;
 using limitcl_engine::no_limit;
 using limitcl_engine::Option;
+using limitcl_engine::Triangle;
 using open3d::geometry::KDTreeFlann;
 using open3d::geometry::PointCloud;
 using open3d::geometry::TriangleMesh;
 
 constexpr Option neighbours_option = {"neighbours", "20", Kind::whole, 3.0, 1000.0, "how many points each normal is estimated from, where the cloud has none"};
-constexpr Option outliers_option = {"outliers", "0", Kind::number, 0.0, no_limit,
-                                    "leave out points whose neighbours are farther away than is usual by more than so many standard deviations (0: none)"};
+constexpr Option outliers_option = {"outliers", "0",      Kind::number,
+                                    0.0,        no_limit, "leave out points so many standard deviations farther from others than is usual (0: none)"};
 constexpr Option outlier_neighbours_option = {"outlier-neighbours", "20", Kind::whole, 1.0, 1000.0, "how many neighbours that looks at"};
 
 const Option poisson_options[] = {
-    {"depth", "0", Kind::whole, 0.0, 12.0, "of the octree: cells are as small as the cloud's width / 2^depth (0: log2 of the points / 2, + 2; 1 to 3 count as 4)"},
-    {"trim", "4", Kind::number, 0.0, no_limit, "take away triangles farther from the points than so many times their spacing (0: none, and the surface closes over every gap)"},
+    {"depth", "0", Kind::zero_or_whole, 5.0, 12.0, "of the octree: cells are as small as the cloud's width / 2^depth (0: half of log2 of the points, + 2)"},
+    {"trim", "4", Kind::number, 0.0, no_limit,
+     "take away triangles farther from the points than so many times their spacing (0: none, and the surface closes over every gap)"},
     neighbours_option,
     outliers_option,
     outlier_neighbours_option};
@@ -114,7 +116,8 @@ void remove_outliers(const Call& call, Cloud& cloud) {
     const double deviations = call.options.number("outliers");
     if (deviations == 0.0) return;
     const auto [kept_points, kept] = cloud.points.RemoveStatisticalOutliers(static_cast<std::size_t>(call.options.whole("outlier-neighbours")), deviations);
-    if (kept.size() < 4) throw Failure{LCL_ENGINE_OPTION, "the engine's options leave " + std::to_string(kept.size()) + " points after the outliers: raise `outliers`"};
+    if (kept.size() < 4)
+        throw Failure{LCL_ENGINE_OPTION, "the engine's options leave " + std::to_string(kept.size()) + " points after the outliers: raise `outliers`"};
     std::vector<char> is_kept(cloud.indices.size(), 0);
     for (const std::size_t index : kept) is_kept[index] = 1;
     std::vector<std::int32_t> outliers;
@@ -126,8 +129,8 @@ void remove_outliers(const Call& call, Cloud& cloud) {
     cloud.points = *kept_points;
 }
 
-/// Makes the normals of neighbours agree, along the edges where they differ least in direction (Hoppe et al. 1992). Gives each point the number of its part, from
-/// 0: what neighbours lead to. Open3D's own function needs the points' Delaunay tetrahedra and fails where many lie on one sphere.
+/// Makes the normals of neighbours agree, along the edges where they differ least in direction (Hoppe et al. 1992). Gives each point the number of its part,
+/// from 0: what neighbours lead to. Open3D's own function needs the points' Delaunay tetrahedra and fails where many lie on one sphere.
 std::vector<std::int32_t> make_consistent(PointCloud& cloud, int neighbours) {
     struct Edge {
         float turn;
@@ -220,7 +223,7 @@ std::vector<double> spacings(const PointCloud& cloud, const KDTreeFlann& tree) {
 int octree_depth(const Call& call, std::size_t count) {
     const int given = call.options.whole("depth");
     const int depth = given > 0 ? given : static_cast<int>(std::log2(static_cast<double>(count)) / 2 + 2);
-    return std::clamp(depth, 4, 12);
+    return std::clamp(depth, 5, 12);  // below 5 the library has not the nodes that it asks for
 }
 
 /// Whether a vertex is within `trim` spacings of the points, the spacing being that of the nearest one.
@@ -247,9 +250,9 @@ void run_poisson(const Call& call) {
         TriangleMesh::CreateFromPointCloudPoisson(cloud.points, static_cast<std::size_t>(octree_depth(call, cloud.indices.size())), 0.0f, 1.1f, false, 1);
     call.progress(-1.0);
     const std::vector<char> near = near_points(*mesh, cloud.points, call.options.number("trim"));
-    std::vector<std::int32_t> triangles;
+    std::vector<Triangle> triangles;
     for (const Eigen::Vector3i& corners : mesh->triangles_) {
-        if (near[corners[0]] && near[corners[1]] && near[corners[2]]) triangles.insert(triangles.end(), corners.data(), corners.data() + 3);
+        if (near[corners[0]] && near[corners[1]] && near[corners[2]]) triangles.push_back({corners[0], corners[1], corners[2]});
     }
     if (triangles.empty()) throw Failure{LCL_ENGINE_FAILED, "Open3D's Poisson reconstruction gives no triangle near the points: raise `trim` or `depth`"};
     std::vector<double> vertices;
@@ -269,9 +272,9 @@ void run_ball_pivoting(const Call& call) {
     std::sort(radii.begin(), radii.end());
     for (double& radius : radii) radius *= spacing;
     const auto mesh = TriangleMesh::CreateFromPointCloudBallPivoting(cloud.points, radii);
-    std::vector<std::int32_t> triangles;
+    std::vector<Triangle> triangles;
     for (const Eigen::Vector3i& corners : mesh->triangles_) {
-        for (int corner = 0; corner < 3; ++corner) triangles.push_back(cloud.indices[static_cast<std::size_t>(corners[corner])]);
+        triangles.push_back({cloud.indices[corners[0]], cloud.indices[corners[1]], cloud.indices[corners[2]]});
     }
     if (triangles.empty()) throw Failure{LCL_ENGINE_FAILED, "Open3D's ball pivoting finds no triangle: take larger `radii`"};
     call.give(triangles);

@@ -39,7 +39,7 @@ struct Closest {
 
 std::vector<double> read_points_of_job(Job& job) {
     const Phase phase(job, &Seconds::read, "reading " + job.options.points_file);
-    return read_points(job.options.points_file);
+    return read_points(job, job.options.points_file);
 }
 
 }  // namespace

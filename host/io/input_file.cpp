@@ -36,7 +36,7 @@ InputFile::InputFile(const std::string& path) : path_(path), descriptor_(path ==
     if (code != 0 || S_ISDIR(status.st_mode)) {
         close();
         if (code != 0) fail(path, code);
-        throw FileError(path + " is a directory; name a mesh file in it");
+        throw FileError(path + " is a directory; name a file in it");
     }
     if (S_ISREG(status.st_mode) && path != "-") size_ = static_cast<std::size_t>(status.st_size);
 }

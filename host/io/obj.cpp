@@ -44,8 +44,10 @@ public:
 
     ObjPart take() { return std::move(part_); }
 
-    /// For each vertex of the mesh the mean of the normals at its corners, NaN where there is none; empty where no corner has one.
+    /// For each vertex of the mesh the mean of the normals at its corners, NaN where there is none; empty where no corner has one. Points without faces have
+    /// one each, as scanning programs write them, where the numbers agree.
     std::vector<double> take_vertex_normals(const PolygonMesh& mesh) const {
+        if (mesh.face_count() == 0 && normals_.size() == mesh.positions.size()) return normals_;
         if (corner_normals_.empty()) return {};
         std::vector<double> normals(3 * static_cast<std::size_t>(mesh.vertex_count), 0.0), counts(mesh.vertex_count, 0.0);
         for (std::size_t corner = 0; corner < corner_normals_.size(); ++corner) {

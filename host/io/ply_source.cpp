@@ -4,6 +4,19 @@
 #include <algorithm>
 
 namespace lcl {
+namespace {
+
+/// Bytes of a row; 0 where its lists say it.
+std::size_t fixed_row_size(const PlyElement& element) {
+    std::size_t size = 0;
+    for (const PlyProperty& property : element.properties) {
+        if (property.is_list) return 0;
+        size += size_of(property.scalar);
+    }
+    return size;
+}
+
+}  // namespace
 
 std::vector<RowRange<AsciiSource>> AsciiSource::cut(const PlyElement& element, const Splitting& splitting) {
     const std::size_t parts = splitting.parts_of(scan_.remaining());
@@ -34,12 +47,14 @@ std::vector<RowRange<BinarySource>> BinarySource::cut(const PlyElement& element,
     const std::vector<RowRange<BinarySource>> whole{{0, element.count, *this}};
     const std::size_t count = splitting.parts_of(std::min(remaining(), element.count * 8));
     if (count == 1) return whole;
+    const std::size_t row_size = fixed_row_size(element);
     std::vector<RowRange<BinarySource>> ranges;
     BinarySource at = *this;
     try {
         for (std::size_t i = 0, row = 0; i < count; ++i) {
             const std::size_t last = element.count / count * (i + 1) + element.count % count * (i + 1) / count;
             ranges.push_back({row, last, at});
+            if (row_size > 0) at.at_ += std::min((last - row) * row_size, at.remaining()), row = last;
             for (; row < last; ++row) at.skip_row(element);
         }
     } catch (const BadInput&) {  // what is wrong is said where it is read

@@ -90,11 +90,11 @@ void take_columns(PointCloud& cloud, std::vector<double> values, std::size_t wid
     const auto kind_at = [&](std::size_t first) { return kind_of_triples(values.data() + first, width, count); };
     const auto is_shifted = [&] {  // x y z intensity and then triples
         const TripleKind second = kind_at(1);
-        return kind_at(0) != TripleKind::unit_vectors && (second == TripleKind::bytes || second == TripleKind::unit_vectors);
+        return kind_at(0) != TripleKind::unit_vectors && (second == TripleKind::bytes || second == TripleKind::unit_vectors || second == TripleKind::zeros);
     };
     std::size_t next = (columns == 7 || columns == 10) && is_shifted() ? 1 : 0;
     if (next == 1) cloud.warnings.push_back("column 4 (intensity) was left out");
-    for (; next + 3 <= width && next + 3 <= columns - 3; next += 3) {
+    for (; next + 3 <= width; next += 3) {
         const TripleKind kind = kind_at(next);
         const bool are_colours = kind == TripleKind::bytes || kind == TripleKind::fractions;
         if (!(are_colours ? cloud.colours : cloud.normals).empty()) break;

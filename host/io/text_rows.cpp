@@ -147,21 +147,23 @@ std::optional<TextRows::Stop> TextRows::read_parts(const std::vector<NumberColum
     return first == stops.end() ? std::nullopt : *first;
 }
 
-/// The range scans of the Stanford 3D Scanning Repository have, behind the points, a line for each cell of the scanner's grid: "0", or "1 k" with the index of
-/// the cell's point. Where the header is cut off, that is the only thing behind points that is known not to be one: every line to the end must be of it.
+/// The range scans of the Stanford 3D Scanning Repository have, behind the points, a line for each cell of the scanner's grid: "0", or "1 k" for the one that
+/// saw point k. Where the header is cut off, that is the only thing behind points that is known not to be one: every line to the end must be of it, and every
+/// point in it once, in order.
 bool TextRows::is_range_grid(const Stop& stop) const {
     if (stop.row == 0 || separator_ != blanks) return false;
     TextScanner row = scan_;
     row.move_to(stop.place);
+    std::size_t seen = 0;
     for (row.skip_space(); !row.at_end(); row.skip_line(), row.skip_space()) {
         std::int64_t count = 0, point = 0;
         if (!row.try_integer(count) || count < 0 || count > 1) return false;
         row.skip_blanks();
-        if (count == 1 && (!row.try_integer(point) || point < 0 || point >= static_cast<std::int64_t>(stop.row))) return false;
+        if (count == 1 && (!row.try_integer(point) || point != static_cast<std::int64_t>(seen++))) return false;
         row.skip_blanks();
         if (!row.at_line_end()) return false;
     }
-    return true;
+    return seen == stop.row;
 }
 
 void TextRows::refuse(const std::vector<NumberColumn>& columns, const Stop& stop) const {

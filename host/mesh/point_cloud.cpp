@@ -2,10 +2,10 @@
 #include "host/mesh/point_cloud.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
-#include <numeric>
+
+#include <nanoflann.hpp>
 
 #include "host/parallel.h"
 
@@ -34,68 +34,44 @@ BadRows find_rows(const std::vector<double>& rows, const IsBad& is_bad) {
 bool is_finite(const double* row) { return std::isfinite(row[0]) && std::isfinite(row[1]) && std::isfinite(row[2]); }
 bool is_normal(const double* row) { return is_finite(row) && (row[0] != 0 || row[1] != 0 || row[2] != 0); }
 
-std::size_t longest_axis(const std::vector<double>& points) {
-    std::array<double, 3> low, high;
-    low.fill(std::numeric_limits<double>::infinity());
-    high.fill(-std::numeric_limits<double>::infinity());
-    for (std::size_t i = 0; i < points.size(); ++i) {
-        low[i % 3] = std::min(low[i % 3], points[i]);
-        high[i % 3] = std::max(high[i % 3], points[i]);
+/// Some of the points, for the nearest of them.
+struct NearestOf {
+    const std::vector<double>& points;
+    std::vector<Index> chosen;
+    double scale = 1;  // squares of coordinates must not overflow
+
+    std::size_t kdtree_get_point_count() const { return chosen.size(); }
+    double kdtree_get_pt(std::size_t i, std::size_t axis) const { return scale * points[3 * static_cast<std::size_t>(chosen[i]) + axis]; }
+    template <class Box>
+    bool kdtree_get_bbox(Box&) const {
+        return false;
     }
-    std::size_t longest = 0;
-    for (std::size_t axis = 1; axis < 3; ++axis)
-        if (high[axis] - low[axis] > high[longest] - low[longest]) longest = axis;
-    return longest;
-}
-
-/// Nearest of some points: sorted along the longest axis, and searched outwards from where a point would be.
-class NearestAlongAxis {
-public:
-    NearestAlongAxis(const std::vector<double>& points, std::vector<Index> among) : points_(points), axis_(longest_axis(points)), order_(std::move(among)) {
-        std::sort(order_.begin(), order_.end(), [&](Index a, Index b) { return at(a)[axis_] < at(b)[axis_]; });
-    }
-
-    Index find(const double* point) const {
-        const auto middle = std::lower_bound(order_.begin(), order_.end(), point[axis_], [&](Index i, double value) { return at(i)[axis_] < value; });
-        Index nearest = -1;
-        double least = std::numeric_limits<double>::infinity();
-        const auto look = [&](Index i) {  // false where this one and all behind it are farther away
-            const double* const other = at(i);
-            if (nearest >= 0 && std::fabs(other[axis_] - point[axis_]) > least) return false;
-            const double distance = std::hypot(other[0] - point[0], other[1] - point[1], other[2] - point[2]);
-            if (nearest < 0 || distance < least) nearest = i, least = distance;
-            return true;
-        };
-        auto up = middle;
-        auto down = middle;
-        for (bool upwards = true, downwards = true; upwards || downwards;) {
-            upwards = upwards && up != order_.end() && look(*up++);
-            downwards = downwards && down != order_.begin() && look(*--down);
-        }
-        return nearest;
-    }
-
-private:
-    const double* at(Index i) const { return &points_[3 * static_cast<std::size_t>(i)]; }
-
-    const std::vector<double>& points_;
-    std::size_t axis_;
-    std::vector<Index> order_;
+    using Tree = nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<double, NearestOf>, NearestOf, 3, Index>;
 };
+
+double scale_of(const std::vector<double>& points) {
+    double largest = 0;
+    for (const double x : points) largest = std::max(largest, std::fabs(x));
+    return largest > std::numeric_limits<double>::min() ? 1 / largest : 1;
+}
 
 /// Gives each point without a normal that of the nearest one that has one.
 void fill_normals(PointCloud& cloud) {
     std::vector<Index> with, without;
     for (std::size_t i = 0; i < cloud.count(); ++i) (is_normal(&cloud.normals[3 * i]) ? with : without).push_back(static_cast<Index>(i));
-    const NearestAlongAxis search(cloud.points, std::move(with));
+    const NearestOf nearest_of{cloud.points, std::move(with), scale_of(cloud.points)};
+    const NearestOf::Tree tree(3, nearest_of, nanoflann::KDTreeSingleIndexAdaptorParams(16));
     parallel_for_each(
         without.size(),
         [&](std::size_t i) {
-            const std::size_t point = static_cast<std::size_t>(without[i]);
-            const std::size_t nearest = static_cast<std::size_t>(search.find(&cloud.points[3 * point]));
-            std::copy_n(&cloud.normals[3 * nearest], 3, &cloud.normals[3 * point]);
+            const std::size_t point = 3 * static_cast<std::size_t>(without[i]);
+            double place[3], distance;
+            for (std::size_t axis = 0; axis < 3; ++axis) place[axis] = nearest_of.scale * cloud.points[point + axis];
+            Index nearest = 0;
+            tree.knnSearch(place, 1, &nearest, &distance);
+            std::copy_n(&cloud.normals[3 * static_cast<std::size_t>(nearest_of.chosen[static_cast<std::size_t>(nearest)])], 3, &cloud.normals[point]);
         },
-        16);
+        256);
 }
 
 }  // namespace
