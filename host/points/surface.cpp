@@ -322,8 +322,7 @@ private:
         report().message.clear();
         report().converged = report().distances.outside == 0;
         if (report().converged) return false;
-        const std::string far =
-            std::to_string(report().distances.outside) + " of " + std::to_string(measured_.size()) + " points are farther from the surface than the tolerance";
+        const std::string far = far_points();
         if (options_.max_vertices > 0 && mesh_.n_vertices() >= static_cast<std::size_t>(options_.max_vertices)) {
             report().message = far + ": " + std::to_string(mesh_.n_vertices()) + " vertices, as many as are allowed, do not reach it";
             return false;
