@@ -40,9 +40,13 @@ public:
     /// Which of the steps -a, -b and (Loop) a + b lead out of the surface here.
     std::array<bool, 3> walls(const ChartPlace& place) const;
 
-private:
+    /// Where a chart begins: 0, or -1 beyond a sharp edge (Doo-Sabin).
     double low_a(Index corner) const;
     double low_b(Index corner) const;
+    /// Whether it has a square where both are below 0.
+    bool has_square_beyond_both(Index corner) const { return table_.square_beyond(corner, 2) >= 0; }
+
+private:
     bool step_square(ChartPlace& place) const;
     bool step_triangle(ChartPlace& place) const;
 
