@@ -37,11 +37,13 @@ class RowSum {
 public:
     explicit RowSum(Index column_count) : place_(static_cast<std::size_t>(column_count), -1) {}
 
+    void add(Index column) {
+        if (place_[column] >= 0) return;
+        place_[column] = static_cast<Index>(entries_.size());
+        entries_.emplace_back(column, 0);
+    }
     void add(Index column, double weight) {
-        if (place_[column] < 0) {
-            place_[column] = static_cast<Index>(entries_.size());
-            entries_.emplace_back(column, 0);
-        }
+        add(column);
         entries_[place_[column]].second += weight;
     }
     void add_row(const Stencils& rows, Index row, double weight) {
@@ -234,16 +236,17 @@ FitSystem::FitSystem(const PatchTable& table, double fair) : table_(table), patc
 
 /// Two vertices are coupled where they share a patch.
 void FitSystem::find_pattern() {
-    std::vector<std::vector<Index>> patches_of(static_cast<std::size_t>(table_.point_count));
-    LocalRows local(*this);
-    std::vector<Index> vertices;
-    for (Index patch = 0; patch < table_.patch_count(); ++patch) {
-        local.find_vertices(patch, vertices);
-        for (const Index vertex : vertices) patches_of[vertex].push_back(patch);
-    }
+    const auto patch_count = static_cast<std::size_t>(table_.patch_count());
+    std::vector<std::vector<Index>> vertices_of(patch_count), patches_of(static_cast<std::size_t>(table_.point_count));
+    for_each_piece(patch_count, piece_count(patch_count, smallest_piece), [&](std::size_t, std::size_t begin, std::size_t end) {
+        LocalRows local(*this);
+        for (std::size_t patch = begin; patch < end; ++patch) local.find_vertices(static_cast<Index>(patch), vertices_of[patch]);
+    });
+    for (std::size_t patch = 0; patch < patch_count; ++patch)
+        for (const Index vertex : vertices_of[patch]) patches_of[vertex].push_back(static_cast<Index>(patch));
     pattern_ = make_rows(table_.point_count, table_.point_count, [&](Index vertex, RowSum& sum) {
         for (const Index patch : patches_of[vertex])
-            for (Index c = table_.patch_begin[patch]; c < table_.patch_begin[patch + 1]; ++c) sum.add_row(rows_, table_.control[c], 0);
+            for (const Index other : vertices_of[patch]) sum.add(other);
     });
     pattern_.weights = {};
 }
