@@ -54,7 +54,6 @@ public:
     Inserter(FitMesh& mesh, const std::vector<double>& points, const InsertOptions& options)
         : mesh_(mesh),
           points_(points),
-          options_(options),
           changed_(mesh.n_faces(), 0),
           least_dihedral_(std::cos(options.feature_degrees * M_PI / 180)),
           least_cosine_(std::cos(options.most_turn_degrees * M_PI / 180)) {}
@@ -187,7 +186,6 @@ private:
 
     FitMesh& mesh_;
     const std::vector<double>& points_;
-    const InsertOptions& options_;
     std::vector<std::uint8_t> changed_;  // of the faces that there were at first
     double least_dihedral_, least_cosine_;
 };

@@ -920,13 +920,13 @@ LCL_API lcl_status lcl_limit_surface_closest(lcl_limit_surface surface, size_t c
 /** Points, and what may stand beside them: normals, colours. Copies what it is given. points: count rows of three, `stride` values apart (0: 3); normals: NULL,
  * or as many, of any length above 0, outwards. At most 2^31 - 1 points. LCL_ERROR_BAD_INPUT names the first that is not finite, or whose normal is zero. */
 LCL_API lcl_status lcl_cloud_create(size_t count, const double* points, size_t stride, const double* normals, size_t normal_stride, lcl_cloud* cloud);
-/** Reads points. .ply .off .obj: the vertices, with nx ny nz, the normals of NOFF, or vn (the mean of those of a vertex's corners; without faces the i-th is that
- * of vertex i), and colours. .xyz: a point a line, x y z [nx ny nz] [r g b]; blanks, commas or semicolons between numbers, as many numbers in every line, # before
- * a comment. Three columns are colours where they hold whole numbers from 0 to 255, one of them above 1, or numbers from 0 to 1 that are no unit vectors; else
- * normals. .pts: the same after a line with the number of points; also x y z intensity r g b. .csv: a header with x, y, z and maybe nx, ny, nz, red, green,
- * blue (any case and order; comma, semicolon or tab). Each also with .gz. What else a file holds is left out. A normal that is zero or not finite becomes that
- * of the nearest point with one; where more than half are so, the cloud has none. Notes tell of both. path "-" is standard input and needs a format.
- * LCL_ERROR_BAD_INPUT names the line or point: not finite, a line with other columns than the first, a count that does not hold. */
+/** Reads points. .ply .off .obj: the vertices, with nx ny nz, the normals of NOFF, or vn (the mean of those of a vertex's corners; without faces the i-th is
+ * that of vertex i), and colours. .xyz: a point a line, x y z [nx ny nz] [r g b]; blanks, commas or semicolons between numbers, as many numbers in every line,
+ * # before a comment. Three columns are colours where they hold whole numbers from 0 to 255, one of them above 1, or numbers from 0 to 1 that are no unit
+ * vectors; else normals. .pts: the same after a line with the number of points; also x y z intensity r g b. .csv: a header with x, y, z and maybe nx, ny, nz,
+ * red, green, blue (any case and order; comma, semicolon or tab). Each also with .gz. What else a file holds is left out. A normal that is zero or not finite
+ * becomes that of the nearest point with one; where more than half are so, the cloud has none. Notes tell of both. path "-" is standard input and needs a
+ * format. LCL_ERROR_BAD_INPUT names the line or point: not finite, a line with other columns than the first, a count that does not hold. */
 LCL_API lcl_status lcl_cloud_read(const char* path, lcl_format format, lcl_cloud* cloud);
 /** The same from bytes in memory; `name` stands in messages. */
 LCL_API lcl_status lcl_cloud_read_memory(const void* bytes, size_t size, lcl_format format, const char* name, lcl_cloud* cloud);
@@ -1011,10 +1011,10 @@ typedef struct lcl_surface_report {
  * scheme: NULL or LCL_SCHEME_DEFAULT: Doo-Sabin; subset, owned, lambda and lambda_per_vertex are refused. Colours of the cloud go to the nearest vertices.
  * mesh: control points, with the creases and corners that it is to be read with; its notes of kind LCL_NOTE_WARNING tell what was mended. report may be NULL.
  * LCL_ERROR_BAD_INPUT: fewer than four different points, all of them in a plane, an engine that finds no surface; LCL_ERROR_INVALID_ARGUMENT: options, also the
- * engine's. Results with mesh and report: LCL_ERROR_NOT_CONVERGED where the tolerance is not reached and max_vertices is 0 (with it: LCL_OK, converged 0), or a
- * solve ends above its tolerance; LCL_ERROR_SINGULAR, LCL_ERROR_INDEFINITE. Beside what the engine takes, memory is some 500 bytes a point and vertex of the
- * approximation. Costs the engine's time, a simplification of some 20 microseconds a vertex, and a solve and a search of closest points (some 2 microseconds a
- * point) a round. */
+ * engine's. Results with report, and with mesh where the last solve came through (or keep_going is set), else *mesh stays as it was:
+ * LCL_ERROR_NOT_CONVERGED where the tolerance is not reached and max_vertices is 0 (with it: LCL_OK, converged 0), or a solve ends above its tolerance;
+ * LCL_ERROR_SINGULAR, LCL_ERROR_INDEFINITE. Beside what the engine takes, memory is some 600 bytes a point. Costs the engine's time, a simplification of 20 to
+ * 100 microseconds a vertex of the approximation, and each round a solve and a search of closest points, some 2 microseconds a point that is near a change. */
 LCL_API lcl_status lcl_surface(lcl_context context, lcl_cloud cloud, const lcl_engine* engine, const lcl_scheme_options* scheme,
                                const lcl_surface_options* options, lcl_mesh* mesh, lcl_surface_report* report);
 
