@@ -152,8 +152,8 @@ std::vector<double> distances(const Folder& folder, const std::string& mesh, con
 }
 
 /// What the report says of the distances is what `closest` finds on the mesh that was written. Both search to 1e-12 of the size in double; devices without it,
-/// to some 1e-6. At corners a search may end beside the closest point: there the report, which knows that vertices lie on the surface, may say less.
-void check_distances(const json& report, const std::vector<double>& found, bool has_corners = false) {
+/// to some 1e-6.
+void check_distances(const json& report, const std::vector<double>& found) {
     const json& fit = report.at("fit");
     const double margin = 1e-6 * report.at("diagonal").get<double>(), count = static_cast<double>(found.size());
     double largest = 0, squares = 0;
@@ -164,7 +164,6 @@ void check_distances(const json& report, const std::vector<double>& found, bool 
     CHECK(fit.at("rms").get<double>() <= rms + margin);
     const auto below = std::count_if(found.begin(), found.end(), [&](double distance) { return distance < p95 - margin; });
     CHECK(static_cast<double>(below) <= 0.95 * count + 1);
-    if (has_corners) return;
     CHECK(fit.at("max").get<double>() >= largest - margin);
     CHECK(fit.at("rms").get<double>() >= rms - margin);
     const auto within = std::count_if(found.begin(), found.end(), [&](double distance) { return distance <= p95 + margin; });
@@ -345,7 +344,7 @@ TEST_CASE("surface keeps creases, and tells them to whoever reads the mesh", "[c
     CHECK(report.at("mesh").at("corners") == 6);
     CHECK(report.at("fit").at("max").get<double>() <= 1e-6 * report.at("diagonal").get<double>());  // a polyhedron whose edges are sharp is its own surface
     CHECK(contains(folder.read("out.obj"), "t crease "));
-    check_distances(report, distances(folder, "out.obj", "in.xyz", "--scheme doo-sabin"), true);
+    check_distances(report, distances(folder, "out.obj", "in.xyz", "--scheme doo-sabin"));
     const Outcome off = surface(folder, "in.xyz -o out.off --tolerance 1e-3 --crease-angle 40");
     CHECK(off.exit_code == 0);
     CHECK(contains(off.err, "crease"));  // which OFF cannot hold
@@ -358,7 +357,7 @@ TEST_CASE("surface fits a sheet by its boundary rule", "[cli][cli_surface]") {
     const json report = surface_report(folder, "in.xyz -o out.obj --tolerance 5e-3 --boundary " + rule);
     CHECK(report.at("parameters").at("boundary") == rule);
     CHECK(report.at("mesh").at("boundary_loops") == 1);
-    check_distances(report, distances(folder, "out.obj", "in.xyz", "--scheme doo-sabin"), true);  // OUT says the rule
+    check_distances(report, distances(folder, "out.obj", "in.xyz", "--scheme doo-sabin"));  // OUT says the rule
 }
 
 TEST_CASE("surface --fit least-squares comes nearer with as many vertices", "[cli][cli_surface]") {

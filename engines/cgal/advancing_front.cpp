@@ -39,7 +39,7 @@ using CellBase = CGAL::Advancing_front_surface_reconstruction_cell_base_3<Kernel
 using Delaunay = CGAL::Delaunay_triangulation_3<Kernel, CGAL::Triangulation_data_structure_3<VertexBase, CellBase>>;
 namespace names = CGAL::parameters;
 
-// CGAL's radius_ratio_bound is left out: version 5.5 and those before it put another value in its place before they use it.
+// CGAL's radius_ratio_bound is left out: version 5.5 puts another value in its place before it looks at it.
 const Option options[] = {
     {"beta", "0.52", Kind::number, 0.0, 1.57, "radians; a triangle that folds by less than this competes by the radius of its Delaunay sphere alone"},
     {"perimeter-bound", "0", Kind::number, 0.0, no_limit, "no triangle has a larger perimeter than this, model units (0: any)"},

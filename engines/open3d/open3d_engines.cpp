@@ -42,7 +42,7 @@ constexpr Option outliers_option = {"outliers", "0",      Kind::number,
 constexpr Option outlier_neighbours_option = {"outlier-neighbours", "20", Kind::whole, 1.0, 1000.0, "how many neighbours that looks at"};
 
 const Option poisson_options[] = {
-    {"depth", "0", Kind::zero_or_whole, 5.0, 12.0, "of the octree: cells are as small as the cloud's width / 2^depth (0: half of log2 of the points, + 2)"},
+    {"depth", "0", Kind::zero_or_whole, 5.0, 12.0, "of the octree: cells are as small as the cloud's width / 2^depth (0: half of log2 of the points, rounded)"},
     {"trim", "4", Kind::number, 0.0, no_limit,
      "take away triangles farther from the points than so many times their spacing (0: none, and the surface closes over every gap)"},
     neighbours_option,
@@ -220,9 +220,10 @@ std::vector<double> spacings(const PointCloud& cloud, const KDTreeFlann& tree) {
     return result;
 }
 
+/// By default about as many vertices as points come out, up to three times as many: finer cells follow the points no better.
 int octree_depth(const Call& call, std::size_t count) {
     const int given = call.options.whole("depth");
-    const int depth = given > 0 ? given : static_cast<int>(std::log2(static_cast<double>(count)) / 2 + 2);
+    const int depth = given > 0 ? given : static_cast<int>(std::lround(std::log2(static_cast<double>(count)) / 2));
     return std::clamp(depth, 5, 12);  // below 5 the library has not the nodes that it asks for
 }
 

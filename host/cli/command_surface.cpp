@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <cmath>
 #include <optional>
 
 #include "host/cli/commands.h"
@@ -141,6 +142,7 @@ Fitted fit_surface(Job& job, lcl_context context, lcl_cloud cloud, const Engine&
     if (fitted.status == LCL_ERROR_BAD_INPUT) check_of_input(job, fitted.status);
     if (fitted.status != LCL_OK && !is_result(fitted.status)) throw failure_of(fitted.status);
     summary.tolerance = job.options.fit_tolerance * summary.report.diagonal;
+    if (!fitted.mesh) summary.report.rms = summary.report.p95 = summary.report.max = std::nan("");  // a solve that failed: nothing was measured
     job.report.fit = summary;
     return fitted;
 }
@@ -150,7 +152,8 @@ void say_fit(Job& job, const Engine& engine) {
     const auto part = [](long long count, const char* one, const char* many) { return count > 0 ? "; " + counted(count, one, many) : std::string(); };
     job.terminal.say("points", counted(fit.point_count, "point measured", "points measured") +
                                    part(fit.duplicate_count, "duplicate dropped", "duplicates dropped") +
-                                   part(fit.left_out_count, "outlier left out", "outliers left out"));
+                                   part(fit.left_out_count, "outlier left out", "outliers left out") +
+                                   part(fit.unused_count, "of them no vertex of the first mesh", "of them no vertices of the first mesh"));
     job.terminal.say("engine", engine.name + ": " + counted(fit.approximation_vertices, "vertex", "vertices") + ", " +
                                    counted(fit.approximation_faces, "face", "faces") + ", " + counted(fit.components, "component", "components") + ", " +
                                    (fit.boundary_loops == 0 ? "closed" : counted(fit.boundary_loops, "boundary loop", "boundary loops")) +

@@ -107,7 +107,7 @@ std::string package_of(const std::string& name) {
         fail(name.empty() ? exit_error : exit_usage,
              "no engine for point clouds is installed" + where + broken +
                  ": apt-get install libcgal-dev (CGAL's advancing front, GPL) or libopen3d-dev (Open3D's Poisson and ball "
-                 "pivoting, MIT), and build limitcl again with -DLIMITCL_BUILD_ENGINES=ON");
+                 "pivoting, MIT), and build limitcl again");
     }
     std::vector<std::string> names;
     for (const Engine& engine : engines) names.push_back(engine.name);

@@ -40,9 +40,20 @@ public:
     /// Which of the steps -a, -b and (Loop) a + b lead out of the surface here.
     std::array<bool, 3> walls(const ChartPlace& place) const;
 
-private:
+    /// Where a chart begins: 0, or -1 beyond a sharp edge (Doo-Sabin).
     double low_a(Index corner) const;
     double low_b(Index corner) const;
+    /// Whether it has a square where both are below 0.
+    bool has_square_beyond_both(Index corner) const { return table_.square_beyond(corner, 2) >= 0; }
+
+private:
+    /// The next corner at the same vertex, across the edge to the next vertex (side 0) or to the previous one (1).
+    Index across(Index corner, int side) const { return side == 0 ? topology_.next(topology_.twin[corner]) : topology_.twin[topology_.previous(corner)]; }
+    Index end_of_sector(Index corner, int side) const;
+    Index kept_square(Index corner) const;
+    bool step_beyond_edges(ChartPlace& place) const;
+    bool is_in_wide_corner(const ChartPlace& place) const;
+    void leave_kept_square(ChartPlace& place) const;
     bool step_square(ChartPlace& place) const;
     bool step_triangle(ChartPlace& place) const;
 

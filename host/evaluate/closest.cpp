@@ -108,14 +108,23 @@ float ClosestSearch::normalised(double coordinate, std::size_t axis) const {
     return static_cast<float>((coordinate - surface_.centre()[axis]) / surface_.size());
 }
 
+/// A grid of so many cells a side, whose middles are the seeds, in every unit square or triangle of every chart.
+void ClosestSearch::place_seeds(int grid) {
+    const bool are_triangles = charts_.are_triangles();
+    const double middle = are_triangles ? 1.0 / 3 : 0.5;
+    for (Index chart = 0; chart < charts_.count(); ++chart) {
+        const int first_i = are_triangles ? 0 : static_cast<int>(charts_.low_a(chart)) * grid,
+                  first_j = are_triangles ? 0 : static_cast<int>(charts_.low_b(chart)) * grid;
+        for (int j = first_j; j < grid; ++j)
+            for (int i = first_i; i < (are_triangles ? grid - j : grid); ++i)
+                if (i >= 0 || j >= 0 || charts_.has_square_beyond_both(chart))
+                    seeds_->places.push_back(charts_.place(chart, (i + middle) / grid, (j + middle) / grid));
+    }
+}
+
 ClosestSearch::ClosestSearch(DeviceSurface& surface) : surface_(surface), charts_(surface.table()), seeds_(std::make_unique<Seeds>()) {
     const int grid = std::clamp(static_cast<int>(std::ceil(std::sqrt(wanted_seeds / std::max(1, charts_.count())))), 1, finest_grid);
-    for (Index chart = 0; chart < charts_.count(); ++chart)
-        for (int j = 0; j < grid; ++j)
-            for (int i = 0; i < (charts_.are_triangles() ? grid - j : grid); ++i) {
-                const double middle = charts_.are_triangles() ? 1.0 / 3 : 0.5;
-                seeds_->places.push_back(charts_.place(chart, (i + middle) / grid, (j + middle) / grid));
-            }
+    place_seeds(grid);
     seeds_->points.resize(3 * seeds_->places.size());
     Batch batch;
     SamplePiece piece;

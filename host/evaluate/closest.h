@@ -31,6 +31,7 @@ public:
 private:
     struct Seeds;
     class Piece;
+    void place_seeds(int grid);
     float normalised(double coordinate, std::size_t axis) const;
 
     DeviceSurface& surface_;

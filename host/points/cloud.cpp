@@ -133,4 +133,20 @@ std::vector<Index> nearest_points(const std::vector<double>& points, const std::
     return nearest;
 }
 
+std::vector<double> values_at_vertices(const PointCloud& cloud, const std::vector<double>& values, const std::vector<double>& positions,
+                                       const std::vector<Index>& source) {
+    if (values.empty()) return {};
+    std::vector<double> unknown;
+    for (std::size_t v = 0; v < source.size(); ++v)
+        if (source[v] < 0) unknown.insert(unknown.end(), &positions[3 * v], &positions[3 * v] + 3);
+    const std::vector<Index> nearest = unknown.empty() ? std::vector<Index>() : nearest_points(cloud.points, unknown);
+    std::size_t next = 0;
+    std::vector<double> out;
+    for (const Index known : source) {
+        const double* const from = &values[3 * static_cast<std::size_t>(known >= 0 ? known : nearest[next++])];
+        out.insert(out.end(), from, from + 3);
+    }
+    return out;
+}
+
 }  // namespace lcl

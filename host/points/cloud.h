@@ -22,4 +22,9 @@ DistinctPoints distinct_points(const PointCloud& cloud);
 /// For each of the query_count places the number of the nearest point. points: n x 3, n > 0; queries: query_count x 3.
 std::vector<Index> nearest_points(const std::vector<double>& points, const std::vector<double>& queries);
 
+/// Values of the points (n x 3, or empty) at vertices: those of point source[i], or of the nearest one where that is -1. positions: vertex_count x 3. Empty
+/// without values.
+std::vector<double> values_at_vertices(const PointCloud& cloud, const std::vector<double>& values, const std::vector<double>& positions,
+                                       const std::vector<Index>& source);
+
 }  // namespace lcl

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <array>
-#include <chrono>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -11,6 +10,7 @@
 #include "host/error.h"
 #include "host/evaluate/closest.h"
 #include "host/points/fit_system.h"
+#include "host/points/stopwatch.h"
 
 namespace lcl {
 namespace {
@@ -21,18 +21,6 @@ constexpr int most_iterations = 200;      // of conjugate gradients in a correct
 
 // Weight of distances along the surface: where it begins and how it goes down. At 1e-6 what is left to do shrinks by about that factor in a correction.
 constexpr double first_along = 1e-2, smallest_along = 1e-6, along_factor = 0.1;
-
-class Stopwatch {
-public:
-    explicit Stopwatch(double& seconds) : seconds_(seconds), start_(std::chrono::steady_clock::now()) {}
-    ~Stopwatch() { seconds_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count(); }
-    Stopwatch(const Stopwatch&) = delete;
-    Stopwatch& operator=(const Stopwatch&) = delete;
-
-private:
-    double& seconds_;
-    std::chrono::steady_clock::time_point start_;
-};
 
 /// A surface that was measured: its closest points.
 struct Candidate {

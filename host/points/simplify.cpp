@@ -14,7 +14,8 @@ namespace lcl {
 namespace {
 
 using Decimater = OpenMesh::Decimater::DecimaterT<FitMesh>;
-constexpr float largest_turn = 45.0F;   // degrees
+constexpr float largest_turn = 45.0F;  // degrees
+constexpr double shape_weight = 1e-8;
 constexpr float largest_aspect = 4.0F;  // longest side over the height on it
 
 double distance_to_segment(const FitMesh::Point& p, const FitMesh::Point& a, const FitMesh::Point& b) {
@@ -69,6 +70,19 @@ private:
     double tolerance_ = 0;
 };
 
+/// Quadrics of planes give zeros that are a little below 0, which the decimater takes for a refusal; and in a plane short edges go first, for the sake of the
+/// triangles' shape. Edges are of length 1 or so.
+class PriorityModule : public OpenMesh::Decimater::ModQuadricT<FitMesh> {
+public:
+    using Quadric = OpenMesh::Decimater::ModQuadricT<FitMesh>;
+    using Handle = OpenMesh::Decimater::ModHandleT<PriorityModule>;
+
+    explicit PriorityModule(FitMesh& mesh) : Quadric(mesh) { set_max_err(DBL_MAX, false); }
+    float collapse_priority(const OpenMesh::Decimater::CollapseInfoT<FitMesh>& collapse) override {
+        return std::max(0.0F, Quadric::collapse_priority(collapse)) + static_cast<float>(shape_weight * (collapse.p1 - collapse.p0).sqrnorm());
+    }
+};
+
 class StopOnRequest : public OpenMesh::Decimater::Observer {
 public:
     explicit StopOnRequest(const std::function<bool(std::size_t)>& progress) : Observer(4096), progress_(progress) {}
@@ -83,13 +97,12 @@ private:
 /// bounded: by the tolerance; else down to `least` vertices.
 void collapse(FitMesh& mesh, bool bounded, double tolerance, std::size_t least, const std::function<bool(std::size_t)>& progress) {
     Decimater decimater(mesh);
-    OpenMesh::Decimater::ModQuadricT<FitMesh>::Handle quadric;
+    PriorityModule::Handle priority;
     OpenMesh::Decimater::ModNormalFlippingT<FitMesh>::Handle flipping;
     OpenMesh::Decimater::ModAspectRatioT<FitMesh>::Handle aspect;
     OpenMesh::Decimater::ModHausdorffT<FitMesh>::Handle hausdorff;
     BoundaryModule::Handle boundary;
-    decimater.add(quadric);
-    decimater.module(quadric).set_max_err(DBL_MAX, false);
+    decimater.add(priority);
     decimater.add(flipping);
     decimater.module(flipping).set_max_normal_deviation(largest_turn);
     decimater.add(aspect);

@@ -2,11 +2,8 @@
 #include "host/points/surface.h"
 
 #include <algorithm>
-#include <chrono>
-#include <cmath>
-#include <numeric>
+#include <optional>
 
-#include "host/evaluate/closest.h"
 #include "host/operator/suitability.h"
 #include "host/points/cloud.h"
 #include "host/points/fit_mesh.h"
@@ -14,26 +11,15 @@
 #include "host/points/insert.h"
 #include "host/points/least_squares.h"
 #include "host/points/simplify.h"
+#include "host/points/stopwatch.h"
 
 namespace lcl {
 namespace {
 
 constexpr double not_known = std::numeric_limits<double>::quiet_NaN();
-constexpr int changed_rings = 3;
-constexpr double turns_of_normals[] = {60, 90, 175};  // degrees: points that the approximation has left off come last
+constexpr double worth_a_vertex = 0.1;                                         // of the tolerance
+constexpr double usual_turn = 90, turns_of_normals[] = {60, usual_turn, 175};  // degrees: points that the approximation has left off come last
 constexpr double room_to_insert = 0.8;  // of the vertices that are allowed: where the simplification stops, so that points can be put where they are needed
-
-class Stopwatch {
-public:
-    explicit Stopwatch(double& seconds) : seconds_(seconds), start_(std::chrono::steady_clock::now()) {}
-    ~Stopwatch() { seconds_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count(); }
-    Stopwatch(const Stopwatch&) = delete;
-    Stopwatch& operator=(const Stopwatch&) = delete;
-
-private:
-    double& seconds_;
-    std::chrono::steady_clock::time_point start_;
-};
 
 /// What one fit works on.
 class SurfaceFit {
@@ -47,6 +33,9 @@ public:
         make_fit_mesh();
         simplify_mesh();
         while (fit_round()) continue;
+        if (sharply_inserted_ > 0)
+            out_.warnings.push_back("points became vertices where the surface has to turn by more than 90 degrees to meet them: " +
+                                    std::to_string(sharply_inserted_) + "; if they are outliers, the engine's options can leave them out");
         give_colours();
         return std::move(out_);
     }
@@ -72,7 +61,7 @@ private:
         if (mended.mesh.face_count() == 0) throw BadInput("engine " + std::string(engine_.name) + " found no surface in these points");
         if (!found.keeps_points) mended.source.assign(mended.source.size(), -1);
         choose_measured(found.is_out, mended.source);
-        orient(mended.mesh, normals_at(mended));
+        orient(mended.mesh, values_at_vertices(distinct_.cloud, distinct_.cloud.normals, mended.mesh.positions, mended.source));
         if (options_.fill_holes > 0) report().filled_holes = fill_holes(mended.mesh, options_.fill_holes);
         describe(mended);
         mesh_ = fit_mesh(mended.mesh, mended.source);
@@ -83,36 +72,15 @@ private:
         std::vector<std::uint8_t> is_used(is_out.size(), 0);
         for (const Index point : source)
             if (point >= 0) is_used[point] = 1;
+        std::vector<Index> measured;
         for (std::size_t i = 0; i < is_out.size(); ++i) {
-            if (is_out[i]) {
-                ++report().left_out_count;
-                continue;
-            }
-            report().unused_count += !is_used[i];
-            measured_.push_back(static_cast<Index>(i));
-            points_.insert(points_.end(), &distinct_.cloud.points[3 * i], &distinct_.cloud.points[3 * i] + 3);
+            if (is_out[i] == 0) measured.push_back(static_cast<Index>(i));
+            report().unused_count += is_out[i] == 0 && is_used[i] == 0;
         }
-        report().point_count = measured_.size();
-        if (measured_.empty()) throw BadInput("engine " + std::string(engine_.name) + " left out all points as outliers: ask it to leave out fewer");
-    }
-
-    /// Normals of the points at the vertices, or nearest to them; empty without.
-    std::vector<double> normals_at(const MendedMesh& mended) const { return values_at(distinct_.cloud.normals, mended.mesh.positions, mended.source); }
-
-    std::vector<double> values_at(const std::vector<double>& values, const std::vector<double>& places, const std::vector<Index>& source) const {
-        if (values.empty()) return {};
-        std::vector<Index> of = source;
-        std::vector<double> unknown;
-        for (std::size_t v = 0; v < of.size(); ++v)
-            if (of[v] < 0) unknown.insert(unknown.end(), &places[3 * v], &places[3 * v] + 3);
-        const std::vector<Index> nearest = unknown.empty() ? std::vector<Index>() : nearest_points(distinct_.cloud.points, unknown);
-        std::size_t next = 0;
-        std::vector<double> out;
-        for (Index& point : of) {
-            if (point < 0) point = nearest[next++];
-            out.insert(out.end(), &values[3 * static_cast<std::size_t>(point)], &values[3 * static_cast<std::size_t>(point)] + 3);
-        }
-        return out;
+        report().point_count = measured.size();
+        report().left_out_count = is_out.size() - measured.size();
+        if (measured.empty()) throw BadInput("engine " + std::string(engine_.name) + " left out all points as outliers: ask it to leave out fewer");
+        distances_.emplace(distinct_.cloud.points, std::move(measured));
     }
 
     void describe(const MendedMesh& mended) {
@@ -154,23 +122,19 @@ private:
         const Features features = find_features(mesh, topology, asked);
         report().creases = features.crease_count;
         std::vector<double> control = solve(mesh, topology, features);
-        if (control.empty()) return false;
-        DeviceSurface surface(context_, build_patch_table(topology, features, scheme_),
-                              options_.solve.precision == Precision::single || !context_->device().has_double ? Real::single : Real::full);
-        if (options_.fit == FitKind::least_squares) {
-            fit_by_least_squares(surface, control);
-            keep(mesh, topology, features, std::move(control));
+        if (control.empty()) {
+            out_.mesh = PolygonMesh();
             return false;
         }
-        surface.set_points(control.data(), 3);
-        ClosestSearch search(surface);
-        measure(search);
+        const bool goes_on =
+            options_.fit == FitKind::least_squares ? fit_by_least_squares(topology, features, control) : measure_round(topology, features, control);
         keep(mesh, topology, features, std::move(control));
-        ++report().rounds;
-        if (wants_more()) return true;
-        if (is_whole_) return false;
-        measure_all(search);  // what is reported holds of all points
-        return wants_more();
+        return goes_on;
+    }
+
+    DeviceSurface make_surface(const Topology& topology, const Features& features) {
+        const bool is_double = options_.solve.precision != Precision::single && context_->device().has_double;
+        return DeviceSurface(context_, build_patch_table(topology, features, scheme_), is_double ? Real::full : Real::single);
     }
 
     /// Empty where the operator has no inverse; the solve's status says why.
@@ -191,89 +155,42 @@ private:
         return is_done ? control : std::vector<double>();
     }
 
-    /// Distances of the points whose part of the mesh has changed; of all where that was all, or where no point seems to be too far.
-    void measure(ClosestSearch& search) {
-        const Stopwatch watch(report().seconds_measure);
+    /// Measures the points whose part of the mesh has changed, and all of them where no other seems to be too far, or where this round is the last.
+    bool measure_round(const Topology& topology, const Features& features, const std::vector<double>& control) {
         tell(SurfacePhase::measure, -1);
-        is_whole_ = false;
-        if (measured_vertices_ > 0) measure(search, points_of_changed_faces());
-        if (measured_vertices_ == 0 || report().distances.outside == 0) measure_all(search);
-        measured_vertices_ = mesh_.n_vertices();
-    }
-
-    void measure_all(ClosestSearch& search) {
-        std::vector<Index> all(measured_.size());
-        std::iota(all.begin(), all.end(), 0);
-        faces_.resize(all.size());
-        distances_.resize(all.size());
-        measure(search, all);
-        is_whole_ = true;
-    }
-
-    /// A new vertex moves the surface some rings of faces away, and farther off by less than rounding would show.
-    std::vector<Index> points_of_changed_faces() const {
-        std::vector<std::uint8_t> is_near(mesh_.n_vertices(), 0);
-        std::fill(is_near.begin() + static_cast<std::ptrdiff_t>(measured_vertices_), is_near.end(), 1);
-        for (int ring = 1; ring <= changed_rings; ++ring)
-            for (const OpenMesh::FaceHandle face : mesh_.faces()) {
-                const auto corners = mesh_.fv_range(face);
-                if (std::none_of(corners.begin(), corners.end(), [&](OpenMesh::VertexHandle v) { return is_near[v.idx()] != 0 && is_near[v.idx()] <= ring; }))
-                    continue;
-                for (const OpenMesh::VertexHandle v : corners)
-                    if (is_near[v.idx()] == 0) is_near[v.idx()] = static_cast<std::uint8_t>(ring + 1);
-            }
-        std::vector<Index> places;
-        for (std::size_t i = 0; i < faces_.size(); ++i) {
-            const auto corners = mesh_.fv_range(mesh_.face_handle(faces_[i]));
-            if (std::any_of(corners.begin(), corners.end(), [&](OpenMesh::VertexHandle v) { return is_near[v.idx()] != 0; }))
-                places.push_back(static_cast<Index>(i));
+        std::optional<Stopwatch> watch(report().seconds_measure);
+        DeviceSurface surface = make_surface(topology, features);
+        surface.set_points(control.data(), 3);
+        ClosestSearch search(surface);
+        bool is_whole = report().rounds == 0;
+        const auto measure_all = [&] {
+            distances_->measure_all(search, mesh_, out_.solve.max_error);
+            is_whole = true;
+            note_distances();
+        };
+        if (!is_whole) {
+            distances_->measure_changed(search, mesh_, out_.solve.max_error);
+            note_distances();
         }
-        return places;
+        if (is_whole || report().converged) measure_all();
+        ++report().rounds;
+        watch.reset();
+        if (wants_more()) return true;
+        if (is_whole) return false;
+        watch.emplace(report().seconds_measure);
+        measure_all();
+        watch.reset();
+        return wants_more();
     }
 
-    /// places: in points_.
-    void measure(ClosestSearch& search, const std::vector<Index>& places) {
-        std::vector<double> points(3 * places.size()), distances(places.size());
-        std::vector<Index> faces(places.size());
-        for (std::size_t i = 0; i < places.size(); ++i) std::copy_n(&points_[3 * static_cast<std::size_t>(places[i])], 3, &points[3 * i]);
-        ClosestPoints found;
-        found.faces = faces.data();
-        found.distances = distances.data();
-        search.find(points.data(), 3, places.size(), found);
-        for (std::size_t i = 0; i < places.size(); ++i) {
-            faces_[places[i]] = faces[i];
-            distances_[places[i]] = std::fabs(distances[i]);
-        }
-        limit_distances_of_vertices();
-        report().distances = statistics();
+    void note_distances() {
+        report().distances = distances_->statistics(tolerance());
+        report().converged = report().distances.outside == 0;
     }
 
-    /// A vertex is no farther from the surface than from its limit point, whatever the search says.
-    void limit_distances_of_vertices() {
-        std::vector<Index> place(distinct_.cloud.count(), -1);
-        for (std::size_t i = 0; i < measured_.size(); ++i) place[measured_[i]] = static_cast<Index>(i);
-        for (const OpenMesh::VertexHandle vertex : mesh_.vertices()) {
-            const Index source = mesh_.data(vertex).source;
-            if (source >= 0 && place[source] >= 0) distances_[place[source]] = std::min(distances_[place[source]], out_.solve.max_error);
-        }
-    }
-
-    FitDistances statistics() {
-        FitDistances out;
-        std::vector<double> sorted = distances_;
-        for (const double distance : sorted) {
-            out.rms += distance * distance;
-            out.outside += distance > tolerance();
-        }
-        out.rms = std::sqrt(out.rms / static_cast<double>(sorted.size()));
-        const auto at_95 = sorted.begin() + static_cast<std::ptrdiff_t>((sorted.size() * 95 + 99) / 100 - 1);
-        std::nth_element(sorted.begin(), at_95, sorted.end());
-        out.p95 = *at_95;
-        out.max = *std::max_element(at_95, sorted.end());
-        return out;
-    }
-
-    void fit_by_least_squares(DeviceSurface& surface, std::vector<double>& control) {
+    /// Never goes on: it does all its rounds by itself.
+    bool fit_by_least_squares(const Topology& topology, const Features& features, std::vector<double>& control) {
+        DeviceSurface surface = make_surface(topology, features);
         LeastSquaresOptions least;
         least.fair = options_.fair;
         least.max_corrections = options_.max_rounds;
@@ -283,15 +200,18 @@ private:
             tell(SurfacePhase::solve, -1);
             return true;
         };
-        LeastSquaresFit fit = fit_least_squares(surface, points_, std::move(control), least);
+        LeastSquaresFit fit = fit_least_squares(surface, distances_->points(), std::move(control), least);
         control = std::move(fit.control);
-        distances_ = std::move(fit.distances);
+        distances_->set(std::move(fit.distances));
         report().rounds = fit.corrections;
         report().iterations += fit.iterations;
         report().seconds_solve += fit.seconds_solve;
         report().seconds_measure += fit.seconds_measure;
-        report().distances = statistics();
-        report().converged = report().distances.outside == 0;
+        note_distances();
+        if (!report().converged)
+            report().message = far_points() + ": a least-squares fit keeps its " + std::to_string(mesh_.n_vertices()) +
+                               " vertices; raise the tolerance, lower W, or give a larger number of vertices";
+        return false;
     }
 
     void keep(const PolygonMesh& mesh, const Topology& topology, const Features& features, std::vector<double> control) {
@@ -305,13 +225,16 @@ private:
         if (options_.fit == FitKind::interpolate) report().interpolation_error = out_.solve.max_error;
     }
 
+    std::string far_points() {
+        return std::to_string(report().distances.outside) + " of " + std::to_string(distances_->count()) +
+               " points are farther from the surface than the tolerance";
+    }
+
     /// Says why there is no further round where the tolerance is not reached.
     bool wants_more() {
         report().message.clear();
-        report().converged = report().distances.outside == 0;
         if (report().converged) return false;
-        const std::string far =
-            std::to_string(report().distances.outside) + " of " + std::to_string(measured_.size()) + " points are farther from the surface than the tolerance";
+        const std::string far = far_points();
         if (options_.max_vertices > 0 && mesh_.n_vertices() >= static_cast<std::size_t>(options_.max_vertices)) {
             report().message = far + ": " + std::to_string(mesh_.n_vertices()) + " vertices, as many as are allowed, do not reach it";
             return false;
@@ -328,23 +251,33 @@ private:
         return false;
     }
 
+    /// Points that are too far become vertices; where none of them can, others of the faces that they are nearest to.
     bool insert() {
         const Stopwatch watch(report().seconds_refine);
         tell(SurfacePhase::refine, -1);
-        std::vector<FarPoint> far;
-        for (std::size_t i = 0; i < measured_.size(); ++i)
-            if (distances_[i] > tolerance()) far.push_back({measured_[i], faces_[i], distances_[i]});
+        const std::vector<FarPoint> far = distances_->far_points(tolerance());
+        for (const double turn : turns_of_normals) {
+            const std::size_t inserted = insert(far, turn);
+            if (turn > usual_turn) sharply_inserted_ += inserted;
+            if (inserted > 0) return true;
+        }
+        std::vector<std::uint8_t> is_far(mesh_.n_faces(), 0);
+        for (const FarPoint& point : far) is_far[point.face] = 1;
+        std::vector<FarPoint> beside = distances_->far_points(worth_a_vertex * tolerance());
+        beside.erase(std::remove_if(beside.begin(), beside.end(), [&](const FarPoint& point) { return is_far[point.face] == 0; }), beside.end());
+        return insert(beside, usual_turn) > 0;
+    }
+
+    std::size_t insert(const std::vector<FarPoint>& far, double most_turn) {
         InsertOptions insert_options;
+        insert_options.most_turn_degrees = most_turn;
         insert_options.max_vertices = static_cast<std::size_t>(options_.max_vertices);
         if (options_.crease_angle_degrees > 0) insert_options.feature_degrees = std::min(insert_options.feature_degrees, options_.crease_angle_degrees);
-        for (const double turn : turns_of_normals) {
-            insert_options.most_turn_degrees = turn;
-            if (insert_points(mesh_, far, distinct_.cloud.points, insert_options) > 0) return true;
-        }
-        return false;
+        return insert_points(mesh_, far, distinct_.cloud.points, insert_options);
     }
 
     void give_colours() {
+        if (out_.mesh.vertex_count == 0) return;
         std::vector<Index> source;
         std::vector<double> places;
         for (const OpenMesh::VertexHandle vertex : mesh_.vertices()) {
@@ -352,7 +285,7 @@ private:
             const FitMesh::Point& point = mesh_.point(vertex);
             places.insert(places.end(), {point[0], point[1], point[2]});
         }
-        out_.colours = values_at(distinct_.cloud.colours, places, source);
+        out_.colours = values_at_vertices(distinct_.cloud, distinct_.cloud.colours, places, source);
     }
 
     std::shared_ptr<Context> context_;
@@ -360,13 +293,9 @@ private:
     const SurfaceOptions& options_;
     SchemeOptions scheme_;
     DistinctPoints distinct_;
-    std::vector<Index> measured_;  // numbers among the distinct points
-    std::vector<double> points_;   // the places of these
-    FitMesh mesh_;                 // its sources are numbers among the distinct points
-    std::vector<Index> faces_;     // of the closest places, as far as measured
-    std::vector<double> distances_;
-    std::size_t measured_vertices_ = 0;  // of the mesh when they were measured last
-    bool is_whole_ = false;              // the last round measured all points
+    std::optional<CloudDistances> distances_;  // of the distinct points that count
+    FitMesh mesh_;                             // its sources are numbers among the distinct points
+    std::size_t sharply_inserted_ = 0;         // points that a normal turned by more than 90 degrees for
     SurfaceResult out_;
 };
 

@@ -11,6 +11,7 @@
 #include "host/device/device.h"
 #include "host/mesh/features.h"
 #include "host/points/approximate.h"
+#include "host/points/distances.h"
 #include "host/solve/solve.h"
 
 namespace lcl {
@@ -35,11 +36,6 @@ struct SurfaceOptions {
     std::function<bool(SurfacePhase, int, double, double)> progress;
 };
 
-struct FitDistances {
-    double rms = 0, p95 = 0, max = 0;  ///< model units
-    std::size_t outside = 0;           ///< farther away than the tolerance
-};
-
 struct SurfaceReport {
     std::size_t point_count = 0, duplicate_count = 0, left_out_count = 0, unused_count = 0;
     Index approximation_vertices = 0, approximation_faces = 0, components = 0, boundary_loops = 0;
@@ -56,7 +52,7 @@ struct SurfaceReport {
 };
 
 struct SurfaceResult {
-    PolygonMesh mesh;             ///< control points; no vertices where the first solve gave none
+    PolygonMesh mesh;             ///< control points; no vertices where a solve gave none
     FeatureOptions features;      ///< what the mesh has to be read with
     std::vector<double> colours;  ///< vertex_count x 3, or empty
     SurfaceReport report;
