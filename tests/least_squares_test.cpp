@@ -390,6 +390,22 @@ TEST_CASE("the control points of a surface come back from points on it", "[least
     CHECK(largest < 1e-6);
 }
 
+TEST_CASE("fits with boundaries and creases come near to their points", "[least_squares]") {
+    const auto [shape, options] = GENERATE(values<Case>({{shapes::cube_with_crease_loop(), solver_test::catmull_clark()},
+                                                         {shapes::grid_quads(3, 4), solver_test::catmull_clark()},
+                                                         {shapes::grid_triangles(4, 3), solver_test::loop()},
+                                                         {shapes::grid_quads(4, 3), solver_test::doo_sabin()}}));
+    CAPTURE(shape.name, static_cast<int>(options.scheme));
+    Scene scene(shape, options);
+    const std::vector<double> points = scene.points_of(shapes::rough(shape, 0.05, 4).mesh.positions, 2000),
+                              start = shapes::rough(shape, 0.05, 8).mesh.positions;
+    const double before = root_mean_square(scene.fit_from(start, points, weight(0, 0)).distances);
+    const double after = root_mean_square(scene.fit_from(start, points, weight(0)).distances);
+    // Points beyond a boundary, or seen from a crease, do not slide: there it goes as slowly as with fixed pairs of points, and does not end at zero soon.
+    CHECK(before > 0.005);
+    CHECK(after < before / 10);
+}
+
 TEST_CASE("a larger weight of the bending energy makes flatter surfaces", "[least_squares]") {
     const auto [shape, options] = GENERATE(from_range(sphere_cases()));
     Scene scene(shape, options);

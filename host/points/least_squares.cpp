@@ -57,7 +57,7 @@ private:
     /// As in the method of Levenberg and Marquardt distances along the surface get a weight: less after steps that lower the objective, which then goes down as
     /// fast as by Gauss and Newton, and more after others, up to 1, where every step lowers it.
     void correct() {
-        double along = first_along, lowest = smallest_along;
+        double along = first_along;
         while (result_.corrections < options_.max_corrections) {
             if (options_.progress && !options_.progress(result_.corrections, *std::max_element(best_.distances.begin(), best_.distances.end())))
                 throw Cancelled("the least-squares fit was cancelled after " + std::to_string(result_.corrections) + " corrections");
@@ -70,11 +70,10 @@ private:
                 const double change = std::abs(next.rms - best_.rms);
                 std::swap(best_, next);
                 if (change < smallest_change * next.rms) return;
-                along = std::max(lowest, along * along_factor);
+                along = std::max(smallest_along, along * along_factor);
             } else {
                 if (along >= 1) return;
-                lowest = std::min(1.0, along / along_factor);  // was too low, and would be again
-                along = std::min(1.0, lowest / along_factor);
+                along = std::min(1.0, along / (along_factor * along_factor));
             }
         }
     }
