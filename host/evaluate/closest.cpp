@@ -13,14 +13,14 @@
 namespace lcl {
 namespace {
 
-constexpr double wanted_seeds = 32768;
-constexpr int finest_grid = 16;                                      // of seeds in a chart, a side
+constexpr double least_seeds = 32768;                                // and one a square or triangle at least
+constexpr int finest_grid = 64;                                      // of seeds in a square or triangle, a side
 constexpr int most_steps = 60;                                       // near an extraordinary vertex Newton's method gains only a factor of about 3 a step
 constexpr double longest_step = 1;                                   // in a chart
 constexpr double double_tolerance = 1e-12, single_tolerance = 1e-7;  // a step's length, of the surface's size
 constexpr std::size_t evaluations_a_point = 4, smallest_piece = 1024;
-constexpr int start_count = 6;         // seeds that a search may begin at, one after the other
-constexpr double doubtful_part = 0.1;  // of the size of a seed's surroundings: where a point stays farther away, another seed may lead nearer
+constexpr int start_count = 12;         // seeds that a search may begin at, one after the other
+constexpr double doubtful_part = 0.05;  // of the size of a seed's surroundings: where a point stays farther away, another seed may lead nearer
 
 using Vector = Eigen::Map<const Eigen::Vector3d>;
 
@@ -44,12 +44,9 @@ struct Batch {
         uv[2 * i] = place.u;
         uv[2 * i + 1] = place.v;
     }
-    /// Half the sides of a cell of a grid of so many cells a chart, one after the other, at place i.
-    double radius(std::size_t i, int grid) const {
-        const Vector u(&du[3 * i]), v(&dv[3 * i]);
-        const SurfacePlace& at = places[i];
-        return ((at.ua * u + at.va * v).norm() + (at.ub * u + at.vb * v).norm()) / (2.0 * grid);
-    }
+    /// Lengths of the derivatives by the chart's parameters at place i.
+    double length_a(std::size_t i) const { return (places[i].ua * Vector(&du[3 * i]) + places[i].va * Vector(&dv[3 * i])).norm(); }
+    double length_b(std::size_t i) const { return (places[i].ub * Vector(&du[3 * i]) + places[i].vb * Vector(&dv[3 * i])).norm(); }
     void evaluate(DeviceSurface& surface, SamplePiece& piece, std::size_t count, const SurfaceValues& values) {
         surface.make_samples({count, faces.data(), corners.data(), uv.data()}, 0, count, piece);
         surface.evaluate(piece, values);
@@ -108,36 +105,78 @@ float ClosestSearch::normalised(double coordinate, std::size_t axis) const {
     return static_cast<float>((coordinate - surface_.centre()[axis]) / surface_.size());
 }
 
-/// A grid of so many cells a side, whose middles are the seeds, in every unit square or triangle of every chart.
-void ClosestSearch::place_seeds(int grid) {
+/// A unit square of a chart, or its triangle, and its sides in space.
+struct ClosestSearch::Cell {
+    Index chart = 0;
+    int a = 0, b = 0;  ///< where it begins: 0 or -1
+    double length_a = 0, length_b = 0;
+
+    /// Seeds along the sides, for a distance of `spacing`; triangles have as many along both.
+    std::array<int, 2> grid(double spacing, bool is_triangle) const {
+        const auto along = [&](double length) { return length > spacing ? static_cast<int>(std::min<double>(finest_grid, std::ceil(length / spacing))) : 1; };
+        const int na = along(length_a), nb = along(length_b);
+        return is_triangle ? std::array<int, 2>{std::max(na, nb), std::max(na, nb)} : std::array<int, 2>{na, nb};
+    }
+};
+
+/// body(i, batch, row) for every place: batch holds its point and first derivatives in a row.
+template <class PlaceOf, class Body>
+void ClosestSearch::evaluate_all(std::size_t count, const PlaceOf& place_of, const Body& body) {
+    Batch batch;
+    SamplePiece piece;
+    for (std::size_t first = 0; first < count; first += DeviceSurface::piece_samples) {
+        const std::size_t size = std::min(DeviceSurface::piece_samples, count - first);
+        batch.resize(size);
+        for (std::size_t i = 0; i < size; ++i) batch.set(i, charts_.surface_place(place_of(first + i)));
+        SurfaceValues values;
+        values.points = batch.points.data(), values.du = batch.du.data(), values.dv = batch.dv.data();
+        batch.evaluate(surface_, piece, size, values);
+        for (std::size_t i = 0; i < size; ++i) body(first + i, batch, i);
+    }
+}
+
+std::vector<ClosestSearch::Cell> ClosestSearch::find_cells() {
+    std::vector<Cell> cells;
+    const double middle = charts_.are_triangles() ? 1.0 / 3 : 0.5;
+    for (Index chart = 0; chart < charts_.count(); ++chart)
+        for (int b = charts_.are_triangles() ? 0 : static_cast<int>(charts_.low_b(chart)); b <= 0; ++b)
+            for (int a = charts_.are_triangles() ? 0 : static_cast<int>(charts_.low_a(chart)); a <= 0; ++a)
+                if (a == 0 || b == 0 || charts_.has_square_beyond_both(chart)) cells.push_back({chart, a, b});
+    evaluate_all(
+        cells.size(), [&](std::size_t i) { return charts_.place(cells[i].chart, cells[i].a + middle, cells[i].b + middle); },
+        [&](std::size_t i, const Batch& batch, std::size_t row) {
+            cells[i].length_a = batch.length_a(row);
+            cells[i].length_b = batch.length_b(row);
+        });
+    return cells;
+}
+
+/// Seeds lie about equally far apart in space, so that the parts of long and large charts have theirs too.
+void ClosestSearch::place_seeds() {
     const bool are_triangles = charts_.are_triangles();
-    const double middle = are_triangles ? 1.0 / 3 : 0.5;
-    for (Index chart = 0; chart < charts_.count(); ++chart) {
-        const int first_i = are_triangles ? 0 : static_cast<int>(charts_.low_a(chart)) * grid,
-                  first_j = are_triangles ? 0 : static_cast<int>(charts_.low_b(chart)) * grid;
-        for (int j = first_j; j < grid; ++j)
-            for (int i = first_i; i < (are_triangles ? grid - j : grid); ++i)
-                if (i >= 0 || j >= 0 || charts_.has_square_beyond_both(chart))
-                    seeds_->places.push_back(charts_.place(chart, (i + middle) / grid, (j + middle) / grid));
+    const std::vector<Cell> cells = find_cells();
+    double area = 0;
+    for (const Cell& cell : cells) area += cell.length_a * cell.length_b / (are_triangles ? 2 : 1);
+    const double spacing = std::sqrt(area / std::max(least_seeds, static_cast<double>(cells.size()))), middle = are_triangles ? 1.0 / 3 : 0.5;
+    for (const Cell& cell : cells) {
+        const auto [na, nb] = cell.grid(spacing, are_triangles);
+        const double radius = (cell.length_a / na + cell.length_b / nb) / 2;
+        for (int j = 0; j < nb; ++j)
+            for (int i = 0; i < (are_triangles ? na - j : na); ++i) {
+                seeds_->places.push_back(charts_.place(cell.chart, cell.a + (i + middle) / na, cell.b + (j + middle) / nb));
+                seeds_->radii.push_back(static_cast<float>(radius / surface_.size()));
+            }
     }
 }
 
 ClosestSearch::ClosestSearch(DeviceSurface& surface) : surface_(surface), charts_(surface.table()), seeds_(std::make_unique<Seeds>()) {
-    const int grid = std::clamp(static_cast<int>(std::ceil(std::sqrt(wanted_seeds / std::max(1, charts_.count())))), 1, finest_grid);
-    place_seeds(grid);
+    place_seeds();
     seeds_->points.resize(3 * seeds_->places.size());
-    Batch batch;
-    SamplePiece piece;
-    for (std::size_t first = 0; first < seeds_->places.size(); first += DeviceSurface::piece_samples) {
-        const std::size_t count = std::min(DeviceSurface::piece_samples, seeds_->places.size() - first);
-        batch.resize(count);
-        for (std::size_t i = 0; i < count; ++i) batch.set(i, charts_.surface_place(seeds_->places[first + i]));
-        SurfaceValues values;
-        values.points = batch.points.data(), values.du = batch.du.data(), values.dv = batch.dv.data();
-        batch.evaluate(surface_, piece, count, values);
-        for (std::size_t i = 0; i < 3 * count; ++i) seeds_->points[3 * first + i] = normalised(batch.points[i], i % 3);
-        for (std::size_t i = 0; i < count; ++i) seeds_->radii.push_back(static_cast<float>(batch.radius(i, grid) / surface_.size()));
-    }
+    evaluate_all(
+        seeds_->places.size(), [&](std::size_t i) { return seeds_->places[i]; },
+        [&](std::size_t i, const Batch& batch, std::size_t row) {
+            for (std::size_t c = 0; c < 3; ++c) seeds_->points[3 * i + c] = normalised(batch.points[3 * row + c], c);
+        });
     seeds_->tree = std::make_unique<Seeds::Tree>(3, *seeds_, nanoflann::KDTreeSingleIndexAdaptorParams(16));
     seeds_->tree->buildIndex();
 }

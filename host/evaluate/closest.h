@@ -31,7 +31,11 @@ public:
 private:
     struct Seeds;
     class Piece;
-    void place_seeds(int grid);
+    struct Cell;
+    template <class PlaceOf, class Body>
+    void evaluate_all(std::size_t count, const PlaceOf& place_of, const Body& body);
+    std::vector<Cell> find_cells();
+    void place_seeds();
     float normalised(double coordinate, std::size_t axis) const;
 
     DeviceSurface& surface_;
