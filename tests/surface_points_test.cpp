@@ -223,6 +223,17 @@ TEST_CASE("as many vertices as are allowed: the fit says what it reached", "[poi
     CHECK(more.report.max < few.report.max / 2);
 }
 
+TEST_CASE("a bound of the vertices that is not reached changes nothing", "[points]") {
+    const shapes::SampledShape cloud = shapes::torus_cloud(60, 24);
+    lcl_surface_options options = tolerance(2e-3);
+    const Fitted free = fit(cloud.shape, options);
+    options.max_vertices = 100000;
+    const Fitted bounded = fit(cloud.shape, options);
+    CHECK(bounded.report.converged == 1);
+    CHECK(bounded.report.vertices == free.report.vertices);
+    CHECK(bounded.report.simplified_vertices == free.report.simplified_vertices);
+}
+
 TEST_CASE("all parts of a cloud are kept", "[points]") {
     const shapes::Shape both = shapes::two_parts(shapes::sphere_cloud(3).shape, shapes::torus_cloud(30, 14).shape, {3, 0, 0.5});
     const Fitted found = fit(both, tolerance(3e-3));
@@ -378,7 +389,7 @@ TEST_CASE("what cannot become a surface fails in one sentence", "[points]") {
     options.progress = [](void*, lcl_surface_phase phase, int32_t, double, double) { return static_cast<int32_t>(phase != LCL_SURFACE_MEASURE); };
     failure(LCL_ERROR_CANCELLED, options);
     known.triangles[0] = 1 << 20;
-    CHECK_THAT(failure(LCL_ERROR_INVALID_ARGUMENT, LCL_SURFACE_OPTIONS_INIT), Contains("engine known: triangle 0 uses vertex 1048576"));
+    CHECK_THAT(failure(LCL_ERROR_INTERNAL, LCL_SURFACE_OPTIONS_INIT), Contains("engine known is defective: triangle 0 uses vertex 1048576"));
     known.triangles.clear();
     CHECK_THAT(failure(LCL_ERROR_BAD_INPUT, LCL_SURFACE_OPTIONS_INIT), Contains("found no surface"));
 }

@@ -168,6 +168,8 @@ std::unique_ptr<LimitSystem> make_system(lcl_context_s& context, lcl_mesh_s& mes
 std::unique_ptr<lcl_mesh_s> make_refined_mesh(const lcl_mesh_s& mesh, Refinement&& refined, int levels);
 /// Values of integer types, of which refinement makes fractions, are rounded.
 void round_integers(std::vector<VertexProperty>& properties);
+/// lcl_mesh_set_colours.
+void set_colours(lcl_mesh_s& mesh, const double* colours);
 
 /// Checked options of a solve, but for warm_start.
 SolveOptions solve_options(const lcl_solve_options& options);

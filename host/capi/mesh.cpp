@@ -250,6 +250,15 @@ lcl_mesh_info sound_info(lcl_mesh_s& mesh, lcl_mesh_info info) {
 
 }  // namespace
 
+void lcl::set_colours(lcl_mesh_s& mesh, const double* colours) {
+    std::vector<VertexProperty>& properties = mesh.file.properties;
+    for (const VertexProperty& column : colour_columns(colours, mesh.file.mesh.vertex_count)) {
+        const auto found = std::find_if(properties.begin(), properties.end(), [&](const VertexProperty& p) { return p.name == column.name; });
+        if (found == properties.end()) properties.push_back(column);
+        else *found = column;
+    }
+}
+
 extern "C" {
 
 lcl_status lcl_mesh_create(const lcl_mesh_data* data, lcl_mesh* mesh) {
@@ -547,13 +556,8 @@ lcl_status lcl_mesh_set_property(lcl_mesh mesh, const char* name, const double* 
 
 lcl_status lcl_mesh_set_colours(lcl_mesh mesh, const double* colours) {
     return guarded([&] {
-        std::vector<VertexProperty>& properties = required(mesh, "mesh")->file.properties;
-        const std::vector<VertexProperty> columns = colour_columns(required(colours, "colours"), mesh->file.mesh.vertex_count);
-        for (const VertexProperty& column : columns) {
-            const auto found = std::find_if(properties.begin(), properties.end(), [&](const VertexProperty& p) { return p.name == column.name; });
-            if (found == properties.end()) properties.push_back(column);
-            else *found = column;
-        }
+        required(mesh, "mesh");
+        set_colours(*mesh, required(colours, "colours"));
         return LCL_OK;
     });
 }

@@ -2,8 +2,10 @@
 #include "host/points/surface.h"
 
 #include <algorithm>
+#include <charconv>
 #include <chrono>
 #include <cmath>
+#include <memory>
 
 #include "host/capi/arguments.h"
 #include "host/points/holes.h"
@@ -17,6 +19,7 @@ SchemeOptions scheme_of(const lcl_scheme_options& given) {
     if (given.lambda != 0 || given.lambda_per_vertex != nullptr)
         throw InvalidArgument("lambda is given: a surface through points has no two-phase form, interpolate its mesh");
     if (given.subset != nullptr || given.owned != nullptr) throw InvalidArgument("subset and owned name vertices, which are not known before: leave them out");
+    if (given.alpha_auto != 0 && given.alpha != 0) throw InvalidArgument("alpha is given and alpha_auto is set: choose one");
     lcl_scheme_options options = given;
     if (options.scheme == LCL_SCHEME_DEFAULT) options.scheme = LCL_SCHEME_DOO_SABIN;
     lcl_mesh_s none;
@@ -25,7 +28,8 @@ SchemeOptions scheme_of(const lcl_scheme_options& given) {
 
 void check_options(const lcl_surface_options& given) {
     const auto refuse = [](const std::string& name, double value, const char* range) {
-        throw InvalidArgument("options." + name + " is " + std::to_string(value) + ", " + range);
+        char text[32];
+        throw InvalidArgument("options." + name + " is " + std::string(text, std::to_chars(text, text + sizeof text, value).ptr) + ", " + range);
     };
     if (given.fit != LCL_FIT_INTERPOLATE && given.fit != LCL_FIT_LEAST_SQUARES) refuse("fit", given.fit, "it is 0 or 1");
     if (!(given.tolerance >= 0) || !std::isfinite(given.tolerance)) refuse("tolerance", given.tolerance, "it is above 0, relative to the diagonal (0: 1e-3)");
@@ -151,7 +155,7 @@ lcl_status lcl_surface(lcl_context context, lcl_cloud cloud, const lcl_engine* e
         if (result.mesh.vertex_count > 0) {
             const std::vector<double> colours = std::move(result.colours);
             auto made = mesh_of(result);
-            if (!colours.empty()) lcl_mesh_set_colours(made.get(), colours.data());
+            if (!colours.empty()) set_colours(*made, colours.data());
             *mesh = made.release();
         }
         if (report != nullptr) give(report, findings, "report");

@@ -2,6 +2,7 @@
 #include "host/evaluate/closest.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numeric>
 
@@ -14,6 +15,7 @@ namespace lcl {
 namespace {
 
 constexpr double least_seeds = 32768;                                // and one a square or triangle at least
+constexpr double most_seeds_factor = 4;
 constexpr int finest_grid = 64;                                      // of seeds in a square or triangle, a side
 constexpr int most_steps = 60;                                       // near an extraordinary vertex Newton's method gains only a factor of about 3 a step
 constexpr double longest_step = 1;                                   // in a chart
@@ -157,7 +159,17 @@ void ClosestSearch::place_seeds() {
     const std::vector<Cell> cells = find_cells();
     double area = 0;
     for (const Cell& cell : cells) area += cell.length_a * cell.length_b / (are_triangles ? 2 : 1);
-    const double spacing = std::sqrt(area / std::max(least_seeds, static_cast<double>(cells.size()))), middle = are_triangles ? 1.0 / 3 : 0.5;
+    const double wanted = std::max(least_seeds, static_cast<double>(cells.size())), middle = are_triangles ? 1.0 / 3 : 0.5;
+    const auto count = [&](double spacing) {
+        double sum = 0;
+        for (const Cell& cell : cells) {
+            const std::array<int, 2> grid = cell.grid(spacing, are_triangles);
+            sum += static_cast<double>(grid[0]) * grid[1];
+        }
+        return sum;
+    };
+    double spacing = std::sqrt(area / wanted);
+    while (count(spacing) > most_seeds_factor * wanted) spacing *= 1.5;  // long thin charts have many along them
     for (const Cell& cell : cells) {
         const auto [na, nb] = cell.grid(spacing, are_triangles);
         const double radius = (cell.length_a / na + cell.length_b / nb) / 2;
@@ -178,7 +190,6 @@ ClosestSearch::ClosestSearch(DeviceSurface& surface) : surface_(surface), charts
             for (std::size_t c = 0; c < 3; ++c) seeds_->points[3 * i + c] = normalised(batch.points[3 * row + c], c);
         });
     seeds_->tree = std::make_unique<Seeds::Tree>(3, *seeds_, nanoflann::KDTreeSingleIndexAdaptorParams(16));
-    seeds_->tree->buildIndex();
 }
 
 /// The searches for a piece of the points, which go on together, step by step.
@@ -220,10 +231,11 @@ private:
         const std::size_t wanted = std::min<std::size_t>(start_count, seeds.places.size());
         for_each(starts_.size(), [&](std::size_t i) {
             float at[3], squares[start_count];
-            Index nearest[start_count];
+            Index nearest[start_count] = {};
             for (std::size_t c = 0; c < 3; ++c) at[c] = search_.normalised(points_[i * stride_ + c], c);
-            seeds.tree->knnSearch(at, wanted, nearest, squares);
-            for (std::size_t k = 0; k < wanted; ++k) starts_[i][k] = {nearest[k], std::sqrt(squares[k]) - seeds.radii[nearest[k]]};
+            const std::size_t found = seeds.tree->knnSearch(at, wanted, nearest, squares);
+            starts_[i][0].seed = 0;  // where squares overflow none is found
+            for (std::size_t k = 0; k < found; ++k) starts_[i][k] = {nearest[k], std::sqrt(squares[k]) - seeds.radii[nearest[k]]};
         });
     }
 
@@ -266,7 +278,7 @@ private:
     }
 
     bool promises_more(std::size_t i, const Start& start) const {
-        if (start.seed < 0 || search_.seeds_->places[start.seed].corner == found_[i].best.corner) return false;
+        if (start.seed < 0) return false;
         const double distance = std::sqrt(found_[i].square) / search_.surface_.size();
         return distance > doubtful_part * search_.seeds_->radii[start.seed] && start.least < distance;
     }

@@ -3,10 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
-#include <nanoflann.hpp>
-
+#include "host/mesh/nearest_points.h"
 #include "host/parallel.h"
 
 namespace lcl {
@@ -34,44 +32,21 @@ BadRows find_rows(const std::vector<double>& rows, const IsBad& is_bad) {
 bool is_finite(const double* row) { return std::isfinite(row[0]) && std::isfinite(row[1]) && std::isfinite(row[2]); }
 bool is_normal(const double* row) { return is_finite(row) && (row[0] != 0 || row[1] != 0 || row[2] != 0); }
 
-/// Some of the points, for the nearest of them.
-struct NearestOf {
-    const std::vector<double>& points;
-    std::vector<Index> chosen;
-    double scale = 1;  // squares of coordinates must not overflow
-
-    std::size_t kdtree_get_point_count() const { return chosen.size(); }
-    double kdtree_get_pt(std::size_t i, std::size_t axis) const { return scale * points[3 * static_cast<std::size_t>(chosen[i]) + axis]; }
-    template <class Box>
-    bool kdtree_get_bbox(Box&) const {
-        return false;
-    }
-    using Tree = nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<double, NearestOf>, NearestOf, 3, Index>;
-};
-
-double scale_of(const std::vector<double>& points) {
-    double largest = 0;
-    for (const double x : points) largest = std::max(largest, std::fabs(x));
-    return largest > std::numeric_limits<double>::min() ? 1 / largest : 1;
-}
-
 /// Gives each point without a normal that of the nearest one that has one.
 void fill_normals(PointCloud& cloud) {
     std::vector<Index> with, without;
-    for (std::size_t i = 0; i < cloud.count(); ++i) (is_normal(&cloud.normals[3 * i]) ? with : without).push_back(static_cast<Index>(i));
-    const NearestOf nearest_of{cloud.points, std::move(with), scale_of(cloud.points)};
-    const NearestOf::Tree tree(3, nearest_of, nanoflann::KDTreeSingleIndexAdaptorParams(16));
-    parallel_for_each(
-        without.size(),
-        [&](std::size_t i) {
-            const std::size_t point = 3 * static_cast<std::size_t>(without[i]);
-            double place[3], distance;
-            for (std::size_t axis = 0; axis < 3; ++axis) place[axis] = nearest_of.scale * cloud.points[point + axis];
-            Index nearest = 0;
-            tree.knnSearch(place, 1, &nearest, &distance);
-            std::copy_n(&cloud.normals[3 * static_cast<std::size_t>(nearest_of.chosen[static_cast<std::size_t>(nearest)])], 3, &cloud.normals[point]);
-        },
-        256);
+    std::vector<double> places;
+    for (std::size_t i = 0; i < cloud.count(); ++i) {
+        if (is_normal(&cloud.normals[3 * i])) {
+            with.push_back(static_cast<Index>(i));
+        } else {
+            without.push_back(static_cast<Index>(i));
+            places.insert(places.end(), &cloud.points[3 * i], &cloud.points[3 * i] + 3);
+        }
+    }
+    const std::vector<Index> nearest = nearest_points(cloud.points, with, places);
+    for (std::size_t i = 0; i < without.size(); ++i)
+        std::copy_n(&cloud.normals[3 * static_cast<std::size_t>(nearest[i])], 3, &cloud.normals[3 * static_cast<std::size_t>(without[i])]);
 }
 
 }  // namespace

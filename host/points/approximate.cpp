@@ -7,6 +7,10 @@
 namespace lcl {
 namespace {
 
+constexpr std::int32_t most_triangles = 715827882;  // whose corners an Index can number
+
+std::string text_or_none(const char* text) { return text != nullptr ? text : ""; }
+
 /// Where the engine's callbacks put things. They are called from foreign code, so what they throw waits until the engine has returned.
 struct Receiver {
     const PointCloud& cloud;
@@ -27,6 +31,7 @@ struct Receiver {
 
     void take(std::int32_t vertices, const double* points, std::int32_t triangles, const std::int32_t* corners) {
         if (was_given) broken = "it gave triangles twice";
+        else if (triangles > most_triangles) broken = "it gave " + std::to_string(triangles) + " triangles, the most is " + std::to_string(most_triangles);
         else if (vertices < 0 || triangles < 0 || (triangles > 0 && corners == nullptr)) broken = "it gave a negative number, or no array";
         else if (points == nullptr && static_cast<std::size_t>(vertices) != cloud.count()) broken = "it gave triangles on another number of points than it got";
         if (!broken.empty()) return;
@@ -38,7 +43,8 @@ struct Receiver {
     }
 
     void leave_out(std::int32_t count, const std::int32_t* indices) {
-        for (std::int32_t i = 0; i < count; ++i) {
+        if (count < 0 || (count > 0 && indices == nullptr)) broken = "it left out a negative number of points, or gave no array";
+        for (std::int32_t i = 0; i < count && broken.empty(); ++i) {
             if (indices[i] < 0 || static_cast<std::size_t>(indices[i]) >= cloud.count()) {
                 broken = "it left out point " + std::to_string(indices[i]) + ", there are " + std::to_string(cloud.count());
                 return;
@@ -63,8 +69,8 @@ lcl_engine_sink sink_of(Receiver& receiver) {
         of(self).guard([&] { of(self).take(vertices, points, triangles, corners); });
     };
     sink.leave_out = [](void* self, std::int32_t count, const std::int32_t* indices) { of(self).guard([&] { of(self).leave_out(count, indices); }); };
-    sink.warn = [](void* self, const char* sentence) { of(self).guard([&] { of(self).out.warnings.emplace_back(sentence); }); };
-    sink.fail = [](void* self, const char* sentence) { of(self).guard([&] { of(self).failure = sentence; }); };
+    sink.warn = [](void* self, const char* sentence) { of(self).guard([&] { of(self).out.warnings.push_back(text_or_none(sentence)); }); };
+    sink.fail = [](void* self, const char* sentence) { of(self).guard([&] { of(self).failure = text_or_none(sentence); }); };
     return sink;
 }
 
@@ -78,7 +84,7 @@ void check_result(const std::string& name, std::int32_t result, const Receiver& 
         case LCL_ENGINE_MEMORY: throw OutOfMemory(failure);
         default: throw BadInput(failure);
     }
-    if (!receiver.broken.empty()) throw InvalidArgument("engine " + name + ": " + receiver.broken);
+    if (!receiver.broken.empty()) throw Error("engine " + name + " is defective: " + receiver.broken);
     if (receiver.out.raw.triangles.empty())
         throw BadInput("engine " + name + " found no surface in these " + std::to_string(receiver.cloud.count()) +
                        " points: they may be too few or too far apart for it");
@@ -87,6 +93,7 @@ void check_result(const std::string& name, std::int32_t result, const Receiver& 
 }  // namespace
 
 Approximation approximate(const lcl_engine& engine, const PointCloud& cloud, const EngineOptions& options, const std::function<bool(double)>& progress) {
+    if (engine.struct_size < sizeof engine) throw InvalidArgument("engine.struct_size is not set, or of an older version: it is the size of lcl_engine");
     if (engine.run == nullptr || engine.name == nullptr) throw InvalidArgument("the engine has no name or no function to run");
     Receiver receiver{cloud, progress, {}, {}, {}, false, nullptr};
     receiver.out.is_out.assign(cloud.count(), 0);

@@ -7,10 +7,9 @@
 #include <numeric>
 
 #include <Eigen/Dense>
-#include <nanoflann.hpp>
 
 #include "host/mesh/box.h"
-#include "host/parallel.h"
+#include "host/mesh/nearest_points.h"
 
 namespace lcl {
 namespace {
@@ -20,16 +19,6 @@ constexpr double flat = 1e-6;  // of the diagonal: what floats leave of a plane
 using Point = Eigen::Map<const Eigen::Vector3d>;
 
 Point point(const std::vector<double>& values, std::size_t i) { return Point(&values[3 * i]); }
-
-void check_values(const PointCloud& cloud) {
-    for (std::size_t i = 0; i < cloud.points.size(); ++i)
-        if (!std::isfinite(cloud.points[i])) throw BadInput("point " + std::to_string(i / 3) + " is not finite: correct it or leave it out");
-    for (std::size_t i = 0; i < cloud.normals.size() / 3; ++i) {
-        const double length = point(cloud.normals, i).norm();
-        if (!std::isfinite(length)) throw BadInput("the normal of point " + std::to_string(i) + " is not finite: correct it, or give no normals");
-        if (!(length > 0)) throw BadInput("the normal of point " + std::to_string(i) + " has no length: correct it, or give no normals");
-    }
-}
 
 /// Marks of the points that are not at the place of an earlier one.
 std::vector<std::uint8_t> firsts_at_their_place(const std::vector<double>& points) {
@@ -92,45 +81,16 @@ void check_spread(const PointCloud& cloud, std::size_t given) {
     throw BadInput(points + " all lie " + place + " (within 1e-6 of their box): a surface in space takes points that do not");
 }
 
-struct PointSet {
-    const std::vector<double>& points;
-    std::size_t kdtree_get_point_count() const { return points.size() / 3; }
-    double kdtree_get_pt(std::size_t i, std::size_t axis) const { return points[3 * i + axis]; }
-    template <class Box>
-    bool kdtree_get_bbox(Box&) const {
-        return false;
-    }
-};
-
 }  // namespace
 
 DistinctPoints distinct_points(const PointCloud& cloud) {
-    check_values(cloud);
-    DistinctPoints out{cloud, {}, 0};
+    DistinctPoints out{cloud, 0};
     const std::vector<std::uint8_t> is_first = firsts_at_their_place(cloud.points);
     for (std::vector<double>* values : {&out.cloud.points, &out.cloud.normals, &out.cloud.colours}) keep_rows(*values, is_first);
-    for (std::size_t i = 0; i < is_first.size(); ++i)
-        if (is_first[i]) out.original.push_back(static_cast<Index>(i));
-    out.duplicate_count = cloud.count() - out.original.size();
-    for (std::size_t i = 0; i < out.cloud.normals.size(); i += 3) Eigen::Map<Eigen::Vector3d>(&out.cloud.normals[i]).normalize();
+    out.duplicate_count = cloud.count() - out.cloud.count();
+    for (std::size_t i = 0; i < out.cloud.normals.size(); i += 3) Eigen::Map<Eigen::Vector3d>(&out.cloud.normals[i]).stableNormalize();
     check_spread(out.cloud, cloud.count());
     return out;
-}
-
-std::vector<Index> nearest_points(const std::vector<double>& points, const std::vector<double>& queries) {
-    const PointSet set{points};
-    using Tree = nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<double, PointSet>, PointSet, 3, Index>;
-    Tree tree(3, set, nanoflann::KDTreeSingleIndexAdaptorParams(16));
-    tree.buildIndex();
-    std::vector<Index> nearest(queries.size() / 3);
-    parallel_for_each(
-        nearest.size(),
-        [&](std::size_t i) {
-            double square = 0;
-            tree.knnSearch(&queries[3 * i], 1, &nearest[i], &square);
-        },
-        1024);
-    return nearest;
 }
 
 std::vector<double> values_at_vertices(const PointCloud& cloud, const std::vector<double>& values, const std::vector<double>& positions,
@@ -139,7 +99,12 @@ std::vector<double> values_at_vertices(const PointCloud& cloud, const std::vecto
     std::vector<double> unknown;
     for (std::size_t v = 0; v < source.size(); ++v)
         if (source[v] < 0) unknown.insert(unknown.end(), &positions[3 * v], &positions[3 * v] + 3);
-    const std::vector<Index> nearest = unknown.empty() ? std::vector<Index>() : nearest_points(cloud.points, unknown);
+    std::vector<Index> nearest;
+    if (!unknown.empty()) {
+        std::vector<Index> all(cloud.count());
+        std::iota(all.begin(), all.end(), 0);
+        nearest = nearest_points(cloud.points, all, unknown);
+    }
     std::size_t next = 0;
     std::vector<double> out;
     for (const Index known : source) {

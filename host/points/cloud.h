@@ -11,16 +11,12 @@ namespace lcl {
 /// The points of a cloud that are not at the place of an earlier one, in their order; normals and colours with them.
 struct DistinctPoints {
     PointCloud cloud;
-    std::vector<Index> original;  ///< count: their numbers in the cloud that was given
     std::size_t duplicate_count = 0;
 };
 
-/// Drops duplicates and makes normals unit. BadInput: a point or normal that is not finite, a normal of length 0, fewer than four different points, points that
-/// all lie on a line or in a plane (within 1e-6 of the diagonal of their box). Sorts once.
+/// Drops duplicates and makes normals unit; points and normals are finite, and no normal is zero. BadInput: fewer than four different points, points that all lie on a line or in a
+/// plane (within 1e-6 of the diagonal of their box). Sorts once.
 DistinctPoints distinct_points(const PointCloud& cloud);
-
-/// For each of the query_count places the number of the nearest point. points: n x 3, n > 0; queries: query_count x 3.
-std::vector<Index> nearest_points(const std::vector<double>& points, const std::vector<double>& queries);
 
 /// Values of the points (n x 3, or empty) at vertices: those of point source[i], or of the nearest one where that is -1. positions: vertex_count x 3. Empty
 /// without values.

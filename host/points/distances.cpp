@@ -8,7 +8,7 @@
 namespace lcl {
 namespace {
 
-constexpr std::uint8_t changed_rings = 3;  // of faces round a new vertex
+constexpr std::uint8_t changed_rings = 3;  // of faces round a new vertex; rows of the inverse of A fall by about a half a ring, and the last round measures all
 
 using Vertex = OpenMesh::VertexHandle;
 
@@ -82,10 +82,11 @@ void CloudDistances::measure(ClosestSearch& search, const std::vector<Index>& pl
 
 FitDistances CloudDistances::statistics(double tolerance) const {
     FitDistances out;
+    out.rms = 0;
     std::vector<double> sorted = distances_;
     for (const double distance : sorted) {
         out.rms += distance * distance;
-        out.outside += distance > tolerance;
+        out.outside += !(distance <= tolerance);
     }
     out.rms = std::sqrt(out.rms / static_cast<double>(count()));
     const auto at_95 = sorted.begin() + static_cast<std::ptrdiff_t>((count() * 95 + 99) / 100 - 1);

@@ -2,6 +2,8 @@
 // Distances of a cloud's points from the limit surface that is fitted to them.
 #pragma once
 
+#include <limits>
+#include <utility>
 #include <vector>
 
 #include "host/evaluate/closest.h"
@@ -11,7 +13,8 @@
 namespace lcl {
 
 struct FitDistances {
-    double rms = 0, p95 = 0, max = 0;  ///< model units
+    static constexpr double not_measured = std::numeric_limits<double>::quiet_NaN();
+    double rms = not_measured, p95 = not_measured, max = not_measured;  ///< model units
     std::size_t outside = 0;           ///< farther away than the tolerance
 };
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "host/points/fit_mesh.h"
 
+#include <string>
+
 namespace lcl {
 
 FitMesh fit_mesh(const PolygonMesh& mesh, const std::vector<Index>& source) {
@@ -13,7 +15,8 @@ FitMesh fit_mesh(const PolygonMesh& mesh, const std::vector<Index>& source) {
     }
     for (Index f = 0; f < mesh.face_count(); ++f) {
         const Index* const corners = &mesh.face_vertices[3 * static_cast<std::size_t>(f)];
-        out.add_face(out.vertex_handle(corners[0]), out.vertex_handle(corners[1]), out.vertex_handle(corners[2]));
+        const OpenMesh::FaceHandle face = out.add_face(out.vertex_handle(corners[0]), out.vertex_handle(corners[1]), out.vertex_handle(corners[2]));
+        if (!face.is_valid()) throw Error("face " + std::to_string(f) + " of a mended mesh cannot be linked");
     }
     return out;
 }

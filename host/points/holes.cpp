@@ -11,6 +11,7 @@
 #include <Eigen/Dense>
 
 #include "host/mesh/topology.h"
+#include "host/points/geometry.h"
 
 namespace lcl {
 namespace {
@@ -20,13 +21,12 @@ constexpr double no_way = std::numeric_limits<double>::infinity();
 class EdgeSet {
 public:
     explicit EdgeSet(const Topology& topology) {
-        for (Index h = 0; h < topology.half_edge_count(); ++h) edges_.insert(key(topology.origin(h), topology.destination(h)));
+        for (Index h = 0; h < topology.half_edge_count(); ++h) edges_.insert(edge_key(topology.origin(h), topology.destination(h)));
     }
-    bool holds(Index a, Index b) const { return edges_.count(key(a, b)) != 0; }
-    void add(Index a, Index b) { edges_.insert(key(a, b)); }
+    bool holds(Index a, Index b) const { return edges_.count(edge_key(a, b)) != 0; }
+    void add(Index a, Index b) { edges_.insert(edge_key(a, b)); }
 
 private:
-    static std::uint64_t key(Index a, Index b) { return static_cast<std::uint64_t>(std::min(a, b)) << 32 | static_cast<std::uint32_t>(std::max(a, b)); }
     std::unordered_set<std::uint64_t> edges_;
 };
 
@@ -85,9 +85,14 @@ private:
 Index fill_holes(PolygonMesh& mesh, int most_edges) {
     const Topology topology = build_topology(mesh);
     EdgeSet edges(topology);
-    Index filled = 0;
+    Index filled = 0, component_count = 0;
+    const std::vector<Index> component = connected_components(topology, component_count);
+    std::vector<Index> size(component_count, 0);
+    for (const Index part : component)
+        if (part >= 0) ++size[part];
     for (const std::vector<Index>& half_edges : boundary_loops(topology)) {
         if (half_edges.size() > static_cast<std::size_t>(most_edges)) continue;
+        if (size[component[topology.origin(half_edges.front())]] == static_cast<Index>(half_edges.size())) continue;  // a sheet that would be closed on itself
         std::vector<Index> loop;  // against the half-edges of the boundary: the way that the new triangles go round
         for (auto h = half_edges.rbegin(); h != half_edges.rend(); ++h) loop.push_back(topology.origin(*h));
         const Triangulation triangulation(mesh, loop, edges);

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <cstdint>
 
+#include "host/points/geometry.h"
+
 namespace lcl {
 namespace {
 
@@ -16,6 +18,8 @@ using Edge = OpenMesh::EdgeHandle;
 using Face = OpenMesh::FaceHandle;
 
 constexpr double least_flip_cosine = 0.5;  // of the turn of a normal by a flip: 60 degrees
+constexpr int most_flips = 64;              // after one point: more than a valence, and an end where flips on a curved surface run in circles
+constexpr double angle_rounding = 1e-9;     // four points on a circle stay as they are
 constexpr double edge_weight = 0.15;       // a point whose barycentric weight is smaller goes on the edge opposite to that corner
 
 /// Twice the area, along the normal.
@@ -24,12 +28,6 @@ Point area_vector(const Point& a, const Point& b, const Point& c) { return (b - 
 bool turns_little(const Point& before, const Point& after, double least_cosine) {
     const double lengths = before.norm() * after.norm();
     return lengths > 0 && (before | after) >= least_cosine * lengths;
-}
-
-double squared_distance_to_segment(const Point& p, const Point& a, const Point& b) {
-    const Point side = b - a;
-    const double length = side.sqrnorm(), at = length > 0 ? std::clamp(((p - a) | side) / length, 0.0, 1.0) : 0.0;
-    return (p - a - side * at).sqrnorm();
 }
 
 double squared_distance_to_triangle(const Point& p, const Point& a, const Point& b, const Point& c) {
@@ -71,7 +69,7 @@ public:
         if (!vertex.is_valid()) return false;
         mesh_.data(vertex).source = far.point;
         make_delaunay(vertex);
-        mark_round(vertex);
+        mark_changed(vertex);
         return true;
     }
 
@@ -138,9 +136,9 @@ private:
 
     bool is_changed(Face face) const { return static_cast<std::size_t>(face.idx()) >= changed_.size() || changed_[face.idx()] != 0; }
 
-    void mark_round(Vertex vertex) {
-        for (const Face face : mesh_.vf_range(vertex))
-            if (static_cast<std::size_t>(face.idx()) < changed_.size()) changed_[face.idx()] = 1;
+    void mark_changed(Vertex vertex) {
+        changed_.resize(mesh_.n_faces(), 1);
+        for (const Face face : mesh_.vf_range(vertex)) changed_[face.idx()] = 1;
     }
 
     /// Lawson's flips, beginning with the edges opposite to the new vertex; all flipped edges end at it.
@@ -149,7 +147,7 @@ private:
         for (const Face face : mesh_.vf_range(vertex))
             for (const HalfEdge h : sides_of(mesh_, face))
                 if (mesh_.from_vertex_handle(h) != vertex && mesh_.to_vertex_handle(h) != vertex) stack.push_back(mesh_.edge_handle(h));
-        for (int flips = 0; !stack.empty() && flips < 64;) {
+        for (int flips = 0; !stack.empty() && flips < most_flips;) {
             const Edge edge = stack.back();
             stack.pop_back();
             if (!should_flip(edge)) continue;
@@ -169,7 +167,7 @@ private:
         if (is_changed_before(h) || is_changed_before(other)) return false;
         const Point &a = origin(mesh_, h), &b = origin(mesh_, other), &c = opposite(mesh_, h), &d = opposite(mesh_, other);
         const double at_c = angle(a - c, b - c), at_d = angle(a - d, b - d);
-        if (!(at_c + at_d > M_PI + 1e-9)) return false;
+        if (!(at_c + at_d > M_PI + angle_rounding)) return false;
         const Point first = area_vector(a, b, c), second = area_vector(b, a, d);
         if ((first | second) < least_dihedral_ * first.norm() * second.norm()) return false;
         const Point both = first + second;

@@ -20,7 +20,7 @@ struct InsertOptions {
     double feature_degrees = 30;    ///< edges whose faces differ by more are not flipped
 };
 
-/// Puts the farthest point of each face into it, the farthest of all first: on the nearest edge, or inside, where it lies there. Faces next to one that has
+/// Puts the farthest point of each face into it, the farthest of all first: on the nearest edge, or inside, where it lies there. Faces that have
 /// changed wait for the next round. No point is put where it would turn a face's normal by more than most_turn_degrees: such points lie off the surface. Edges
 /// round the new vertices are flipped where that makes them Delaunay (the angles opposite to them sum to no more than 180 degrees). points: of the cloud, n
 /// x 3. Returns the number of new vertices.

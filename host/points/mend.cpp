@@ -9,6 +9,7 @@
 #include <Eigen/Dense>
 
 #include "host/mesh/topology.h"
+#include "host/points/geometry.h"
 
 namespace lcl {
 namespace {
@@ -20,8 +21,6 @@ struct Side {
     std::uint64_t edge;  ///< its two vertices, the smaller one first
     Index half_edge;
 };
-
-std::uint64_t edge_key(Index a, Index b) { return static_cast<std::uint64_t>(std::min(a, b)) << 32 | static_cast<std::uint32_t>(std::max(a, b)); }
 
 std::vector<Side> sorted_sides(const std::vector<Triangle>& triangles) {
     std::vector<Side> sides;
@@ -36,10 +35,10 @@ void check(const RawTriangles& raw, const std::string& engine) {
     const auto vertices = static_cast<Index>(raw.points.size() / 3);
     for (std::size_t i = 0; i < raw.triangles.size(); ++i)
         if (raw.triangles[i] < 0 || raw.triangles[i] >= vertices)
-            throw InvalidArgument("engine " + engine + ": triangle " + std::to_string(i / 3) + " uses vertex " + std::to_string(raw.triangles[i]) +
+            throw Error("engine " + engine + " is defective: triangle " + std::to_string(i / 3) + " uses vertex " + std::to_string(raw.triangles[i]) +
                                   ", there are " + std::to_string(vertices));
     for (std::size_t i = 0; i < raw.points.size(); ++i)
-        if (!std::isfinite(raw.points[i])) throw InvalidArgument("engine " + engine + ": vertex " + std::to_string(i / 3) + " is not finite");
+        if (!std::isfinite(raw.points[i])) throw Error("engine " + engine + " is defective: vertex " + std::to_string(i / 3) + " is not finite");
 }
 
 /// Triangles of three different vertices, each set of three once.

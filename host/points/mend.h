@@ -23,11 +23,11 @@ struct MendedMesh {
 };
 
 /// A triangle is taken while none of its edges has two already. Then neighbours are oriented alike, and vertices whose triangles hang together only there are
-/// split. Linear time but for a sort. InvalidArgument "engine NAME: ..." where a number is out of range or a point is not finite.
+/// split. Linear time but for a sort. Error "engine NAME is defective: ..." where a number is out of range or a point is not finite.
 MendedMesh mend(const RawTriangles& raw, const std::string& engine);
 
-/// Turns every component: outwards by its volume about its centre; open ones, where normals are given, so that most of their area agrees with them. normals:
-/// vertex_count x 3, or empty.
+/// Turns every component: outwards by its volume about its centre; open ones, where normals are given, so that most of their area agrees with them. The inner
+/// wall of a hollow solid is turned outwards too. Every vertex has a face. normals: vertex_count x 3, or empty.
 void orient(PolygonMesh& mesh, const std::vector<double>& normals);
 
 }  // namespace lcl

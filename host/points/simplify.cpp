@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cfloat>
+#include <cmath>
 
 #include <OpenMesh/Tools/Decimater/DecimaterT.hh>
 #include <OpenMesh/Tools/Decimater/ModAspectRatioT.hh>
@@ -10,19 +11,16 @@
 #include <OpenMesh/Tools/Decimater/ModNormalFlippingT.hh>
 #include <OpenMesh/Tools/Decimater/ModQuadricT.hh>
 
+#include "host/points/geometry.h"
+
 namespace lcl {
 namespace {
 
 using Decimater = OpenMesh::Decimater::DecimaterT<FitMesh>;
 constexpr float largest_turn = 45.0F;  // degrees
+constexpr std::size_t least_vertices = 4;
 constexpr double shape_weight = 1e-8;
 constexpr float largest_aspect = 4.0F;  // longest side over the height on it
-
-double distance_to_segment(const FitMesh::Point& p, const FitMesh::Point& a, const FitMesh::Point& b) {
-    const FitMesh::Point side = b - a;
-    const double length = side.sqrnorm(), at = length > 0 ? std::clamp(((p - a) | side) / length, 0.0, 1.0) : 0.0;
-    return (p - a - side * at).norm();
-}
 
 /// Keeps the boundary where it is: a vertex of it may only go along it, as long as all that went before stays within the tolerance of the edge that is left.
 class BoundaryModule : public OpenMesh::Decimater::ModBaseT<FitMesh> {
@@ -63,7 +61,7 @@ private:
         const OpenMesh::HalfedgeHandle side = other_side(collapse);
         const OpenMesh::VertexHandle far = mesh().to_vertex_handle(side) == collapse.v0 ? mesh().from_vertex_handle(side) : mesh().to_vertex_handle(side);
         const double before = std::max(mesh().property(strayed_, mesh().edge_handle(side)), mesh().property(strayed_, mesh().edge_handle(collapse.v0v1)));
-        return before + distance_to_segment(collapse.p0, collapse.p1, mesh().point(far));
+        return before + std::sqrt(squared_distance_to_segment(collapse.p0, collapse.p1, mesh().point(far)));
     }
 
     OpenMesh::EPropHandleT<double> strayed_;
@@ -136,7 +134,7 @@ void simplify(FitMesh& mesh, const SimplifyOptions& options) {
         mesh.property(given, vertex) = mesh.point(vertex);
         mesh.point(vertex) *= scale;
     }
-    collapse(mesh, true, options.tolerance * scale, std::max<std::size_t>(4, options.max_vertices), options.progress);
+    collapse(mesh, true, options.tolerance * scale, least_vertices, options.progress);
     if (options.max_vertices > 0 && mesh.n_vertices() > options.max_vertices) collapse(mesh, false, 0, options.max_vertices, options.progress);
     for (const OpenMesh::VertexHandle vertex : mesh.vertices()) mesh.point(vertex) = mesh.property(given, vertex);
     mesh.remove_property(given);

@@ -17,7 +17,7 @@ struct SimplifyOptions {
 
 /// Half-edge collapses in the order of their quadric error (Garland & Heckbert 1997; OpenMesh's decimater), so that the vertices that are left are some of
 /// those that were there. No collapse turns a triangle's normal by more than 45 degrees or leaves slivers, and the boundary stays within the tolerance of where
-/// it was. Some 20 microseconds a vertex.
+/// it was. 20 to 100 microseconds a vertex.
 void simplify(FitMesh& mesh, const SimplifyOptions& options);
 
 }  // namespace lcl

@@ -2,6 +2,7 @@
 #include "host/points/surface.h"
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 
 #include "host/operator/suitability.h"
@@ -124,6 +125,8 @@ private:
         std::vector<double> control = solve(mesh, topology, features);
         if (control.empty()) {
             out_.mesh = PolygonMesh();
+            report().distances = FitDistances();
+            report().converged = false;
             return false;
         }
         const bool goes_on =
@@ -152,7 +155,8 @@ private:
         out_.solve = solve_host(*system, mesh.positions.data(), 3, 3, solve_options, false, control.data(), 3);
         report().iterations += out_.solve.iterations;
         const bool is_done = out_.solve.status == SolveStatus::converged || options_.solve.keep_going;
-        return is_done ? control : std::vector<double>();
+        const bool is_finite = std::all_of(control.begin(), control.end(), [](double value) { return std::isfinite(value); });
+        return is_done && is_finite ? control : std::vector<double>();
     }
 
     /// Measures the points whose part of the mesh has changed, and all of them where no other seems to be too far, or where this round is the last.
