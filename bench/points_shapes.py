@@ -8,7 +8,8 @@ import sys
 
 
 class Arc:
-    """Of a circle in the half-plane (rho, z), rho >= 0; turned about z it makes a piece of a surface. outside: 1 where the solid has the centre, -1 in a fillet."""
+    """Of a circle in the half-plane (rho, z), rho >= 0; turned about z it makes a piece of a surface. outside: -1 in a fillet, where the solid does not have
+    the centre."""
 
     def __init__(self, rho, z, radius, start, end, outside=1):
         self.rho, self.z, self.radius, self.start, self.end, self.outside = rho, z, radius, start, end, outside
@@ -169,10 +170,9 @@ def triples(points):
 
 def write_ply(path, points):
     """Points alone, binary."""
-    kind, end = {"d": "double", "f": "float"}[points.typecode], "\nproperty "
+    properties = "".join(f"property { {'d': 'double', 'f': 'float'}[points.typecode]} {axis}\n" for axis in "xyz")
     with open(path, "wb") as file:
-        file.write(f"ply\nformat binary_{sys.byteorder}_endian 1.0\nelement vertex {len(points) // 3}{end}{end[1:].join(f'{kind} {a}' + chr(10) for a in 'xyz')}"
-                   "end_header\n".encode())
+        file.write(f"ply\nformat binary_{sys.byteorder}_endian 1.0\nelement vertex {len(points) // 3}\n{properties}end_header\n".encode())
         points.tofile(file)
 
 
