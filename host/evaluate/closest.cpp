@@ -14,7 +14,7 @@
 namespace lcl {
 namespace {
 
-constexpr double least_seeds = 32768;                                // and one a square or triangle at least
+constexpr double least_seeds = 32768;  // and one a square or triangle at least
 constexpr double most_seeds_factor = 4;
 constexpr int finest_grid = 64;                                      // of seeds in a square or triangle, a side
 constexpr int most_steps = 60;                                       // near an extraordinary vertex Newton's method gains only a factor of about 3 a step

@@ -14,8 +14,8 @@ struct DistinctPoints {
     std::size_t duplicate_count = 0;
 };
 
-/// Drops duplicates and makes normals unit; points and normals are finite, and no normal is zero. BadInput: fewer than four different points, points that all lie on a line or in a
-/// plane (within 1e-6 of the diagonal of their box). Sorts once.
+/// Drops duplicates and makes normals unit; points and normals are finite, and no normal is zero. BadInput: fewer than four different points, points that all
+/// lie on a line or in a plane (within 1e-6 of the diagonal of their box). Sorts once.
 DistinctPoints distinct_points(const PointCloud& cloud);
 
 /// Values of the points (n x 3, or empty) at vertices: those of point source[i], or of the nearest one where that is -1. positions: vertex_count x 3. Empty

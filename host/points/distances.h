@@ -15,7 +15,7 @@ namespace lcl {
 struct FitDistances {
     static constexpr double not_measured = std::numeric_limits<double>::quiet_NaN();
     double rms = not_measured, p95 = not_measured, max = not_measured;  ///< model units
-    std::size_t outside = 0;           ///< farther away than the tolerance
+    std::size_t outside = 0;                                            ///< farther away than the tolerance
 };
 
 class CloudDistances {

@@ -18,8 +18,8 @@ using Edge = OpenMesh::EdgeHandle;
 using Face = OpenMesh::FaceHandle;
 
 constexpr double least_flip_cosine = 0.5;  // of the turn of a normal by a flip: 60 degrees
-constexpr int most_flips = 64;              // after one point: more than a valence, and an end where flips on a curved surface run in circles
-constexpr double angle_rounding = 1e-9;     // four points on a circle stay as they are
+constexpr int most_flips = 64;             // after one point: more than a valence, and an end where flips on a curved surface run in circles
+constexpr double angle_rounding = 1e-9;    // four points on a circle stay as they are
 constexpr double edge_weight = 0.15;       // a point whose barycentric weight is smaller goes on the edge opposite to that corner
 
 /// Twice the area, along the normal.

@@ -36,7 +36,7 @@ void check(const RawTriangles& raw, const std::string& engine) {
     for (std::size_t i = 0; i < raw.triangles.size(); ++i)
         if (raw.triangles[i] < 0 || raw.triangles[i] >= vertices)
             throw Error("engine " + engine + " is defective: triangle " + std::to_string(i / 3) + " uses vertex " + std::to_string(raw.triangles[i]) +
-                                  ", there are " + std::to_string(vertices));
+                        ", there are " + std::to_string(vertices));
     for (std::size_t i = 0; i < raw.points.size(); ++i)
         if (!std::isfinite(raw.points[i])) throw Error("engine " + engine + " is defective: vertex " + std::to_string(i / 3) + " is not finite");
 }
