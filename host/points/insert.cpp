@@ -54,7 +54,7 @@ public:
           points_(points),
           changed_(mesh.n_faces(), 0),
           least_dihedral_(std::cos(options.feature_degrees * M_PI / 180)),
-          least_cosine_(std::cos(options.most_turn_degrees * M_PI / 180)) {}
+          least_cosine_(std::cos(options.most_turn_degrees * M_PI / 180) - angle_rounding) {}
 
     bool insert(const FarPoint& far) {
         const Point p(points_[3 * static_cast<std::size_t>(far.point)], points_[3 * static_cast<std::size_t>(far.point) + 1],

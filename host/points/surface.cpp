@@ -19,7 +19,7 @@ namespace {
 
 constexpr double not_known = std::numeric_limits<double>::quiet_NaN();
 constexpr double worth_a_vertex = 0.1;                                         // of the tolerance
-constexpr double usual_turn = 90, turns_of_normals[] = {60, usual_turn, 175};  // degrees: points that the approximation has left off come last
+constexpr double usual_turn = 90, turns_of_normals[] = {60, usual_turn, 180};  // degrees: points that the approximation has left off come last
 constexpr double room_to_insert = 0.8;  // of the vertices that are allowed: where the simplification stops, so that points can be put where they are needed
 
 /// What one fit works on.
