@@ -18,6 +18,7 @@ namespace lcl {
 namespace {
 
 constexpr double not_known = std::numeric_limits<double>::quiet_NaN();
+constexpr std::size_t small_hole = 10;                                         // edges: what engines leave where points are uneven or noisy
 constexpr double worth_a_vertex = 0.1;                                         // of the tolerance
 constexpr double usual_turn = 90, turns_of_normals[] = {60, usual_turn, 180};  // degrees: points that the approximation has left off come last
 constexpr double room_to_insert = 0.8;  // of the vertices that are allowed: where the simplification stops, so that points can be put where they are needed
@@ -87,7 +88,12 @@ private:
     void describe(const MendedMesh& mended) {
         const Topology topology = build_topology(mended.mesh);
         connected_components(topology, report().components);
-        report().boundary_loops = static_cast<Index>(boundary_loops(topology).size());
+        const std::vector<std::vector<Index>> loops = boundary_loops(topology);
+        report().boundary_loops = static_cast<Index>(loops.size());
+        const auto small = std::count_if(loops.begin(), loops.end(), [](const std::vector<Index>& loop) { return loop.size() <= small_hole; });
+        if (small > 0 && options_.fill_holes < static_cast<int>(small_hole))
+            out_.warnings.push_back("the approximation has " + std::to_string(small) + " holes of at most " + std::to_string(small_hole) +
+                                    " edges, which can be filled on request");
         report().approximation_vertices = mended.mesh.vertex_count;
         report().approximation_faces = mended.mesh.face_count();
         report().dropped_faces = mended.dropped_faces;

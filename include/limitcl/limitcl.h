@@ -908,11 +908,12 @@ typedef struct lcl_closest_points {
 #define LCL_CLOSEST_POINTS_INIT \
     { (uint32_t)sizeof(lcl_closest_points), NULL, NULL, NULL, NULL, NULL, NULL }
 
-/** For each of `count` points (rows of three, `stride` values apart, 0: 3) the closest point of the limit surface: the nearest of a grid of points in every
- * face, then Newton on the exact surface, across patch borders, until a step is shorter than 1e-12 of the surface's size (in single precision 1e-7). A point of
- * the boundary counts where nothing nearer is. Where the surface folds within the size of a face, a neighbouring local minimum may be found. A distance to a
- * point without a normal is positive. LCL_ERROR_BAD_INPUT for points that are not finite or more than 1e12 times as
- * far away as the surface is large. */
+/** For each of `count` points (rows of three, `stride` values apart, 0: 3) the closest point of the limit surface: from the nearest of places that lie equally
+ * far apart on the surface Newton on the exact surface, across patch borders, until a step is shorter than 1e-12 of the surface's size (in single precision
+ * 1e-7); where the point stays farther away than a twentieth of what lies between two such places, from up to eleven more of them. A point of the boundary
+ * counts where nothing nearer is. Where the surface folds more closely than these places lie (an edge of a face at most), a neighbouring local minimum may be
+ * found. A distance to a point without a normal is positive. LCL_ERROR_BAD_INPUT for points that are not finite or more than 1e12 times as far away as the
+ * surface is large. */
 LCL_API lcl_status lcl_limit_surface_closest(lcl_limit_surface surface, size_t count, const double* points, size_t stride, const lcl_closest_points* closest);
 
 /* ---------------------------------------------------------------- surfaces from point clouds */
@@ -983,7 +984,7 @@ typedef struct lcl_surface_report {
     int64_t left_out_count;                              /**< outliers by the engine's options: not measured */
     int64_t unused_count;                                /**< measured points that are no vertex of the engine's approximation */
     int32_t approximation_vertices, approximation_faces; /**< what the engine gave, mended */
-    int32_t components, boundary_loops;                  /**< of that */
+    int32_t components, boundary_loops;                  /**< of that, holes filled */
     int32_t filled_holes, dropped_faces, split_vertices; /**< mended: holes filled on request, faces beyond two at an edge, vertices where surfaces touched */
     int32_t simplified_vertices;                         /**< before the first solve */
     int32_t vertices, faces, creases;                    /**< of the control mesh */
@@ -1013,8 +1014,10 @@ typedef struct lcl_surface_report {
  * LCL_ERROR_BAD_INPUT: fewer than four different points, all of them in a plane, an engine that finds no surface; LCL_ERROR_INVALID_ARGUMENT: options, also the
  * engine's. Results with report, and with mesh where the last solve came through (or keep_going is set), else *mesh stays as it was:
  * LCL_ERROR_NOT_CONVERGED where the tolerance is not reached and max_vertices is 0 (with it: LCL_OK, converged 0), or a solve ends above its tolerance;
- * LCL_ERROR_SINGULAR, LCL_ERROR_INDEFINITE. Beside what the engine takes, memory is some 600 bytes a point. Costs the engine's time, a simplification of 20 to
- * 100 microseconds a vertex of the approximation, and each round a solve and a search of closest points, some 2 microseconds a point that is near a change. */
+ * LCL_ERROR_SINGULAR, LCL_ERROR_INDEFINITE. Beside what the engine takes, memory is some 600 bytes a point; least squares take 200 bytes a point and 5 to 10 kB
+ * a vertex more. Costs the engine's time, a simplification of 20 to 100 microseconds a vertex of the approximation, and each round a solve and a search of
+ * closest points, some 2 to 10 microseconds a point that is near a change. The inner wall of a hollow solid is turned outwards as well. The engine and progress
+ * are called on this thread, progress between the steps of a phase: a search or a solve that is under way ends first. */
 LCL_API lcl_status lcl_surface(lcl_context context, lcl_cloud cloud, const lcl_engine* engine, const lcl_scheme_options* scheme,
                                const lcl_surface_options* options, lcl_mesh* mesh, lcl_surface_report* report);
 
