@@ -33,8 +33,8 @@ private:
 /// Least area of the polygon loop[i] .. loop[j], for all i < j, and the third corner of the triangle on its side from j to i.
 class Triangulation {
 public:
-    Triangulation(const PolygonMesh& mesh, const std::vector<Index>& loop, const EdgeSet& edges)
-        : mesh_(mesh), loop_(loop), size_(loop.size()), area_(size_ * size_, 0.0), third_(size_ * size_, 0) {
+    Triangulation(const PolygonMesh& mesh, const Topology& topology, const std::vector<Index>& loop, const EdgeSet& edges)
+        : mesh_(mesh), topology_(topology), loop_(loop), size_(loop.size()), area_(size_ * size_, 0.0), third_(size_ * size_, 0) {
         for (std::size_t span = 2; span < size_; ++span)
             for (std::size_t i = 0; i + span < size_; ++i) find(i, i + span, edges);
     }
@@ -63,9 +63,18 @@ private:
         const bool is_side = i == 0 && j == size_ - 1;  // of the loop itself; any other edge has to be new
         if (!is_side && edges.holds(loop_[i], loop_[j])) return;
         for (std::size_t k = i + 1; k < j; ++k) {
+            if (closes_with_two_faces(i, k, j)) continue;
             const double area = area_[i * size_ + k] + area_[k * size_ + j] + triangle(i, k, j);
             if (area < least) least = area, third_[i * size_ + j] = static_cast<std::uint16_t>(k);
         }
+    }
+
+    /// Whether the triangle lies on both sides of the loop at a vertex that has just one face, which would then have two all round it: no scheme takes that.
+    bool closes_with_two_faces(std::size_t i, std::size_t k, std::size_t j) const {
+        const auto has_one_face = [&](std::size_t corner) { return topology_.vertex_face_count[loop_[corner]] == 1; };
+        if (k == i + 1 && j == k + 1 && has_one_face(k)) return true;
+        if (i != 0 || j != size_ - 1) return false;
+        return (k == 1 && has_one_face(i)) || (k + 1 == j && has_one_face(j));
     }
 
     double triangle(std::size_t i, std::size_t k, std::size_t j) const {
@@ -74,6 +83,7 @@ private:
     }
 
     const PolygonMesh& mesh_;
+    const Topology& topology_;
     const std::vector<Index>& loop_;
     std::size_t size_;
     std::vector<double> area_;
@@ -95,7 +105,7 @@ Index fill_holes(PolygonMesh& mesh, int most_edges) {
         if (size[component[topology.origin(half_edges.front())]] == static_cast<Index>(half_edges.size())) continue;  // a sheet that would be closed on itself
         std::vector<Index> loop;  // against the half-edges of the boundary: the way that the new triangles go round
         for (auto h = half_edges.rbegin(); h != half_edges.rend(); ++h) loop.push_back(topology.origin(*h));
-        const Triangulation triangulation(mesh, loop, edges);
+        const Triangulation triangulation(mesh, topology, loop, edges);
         if (!triangulation.is_possible()) continue;
         ++filled;
         triangulation.for_each([&](Index a, Index b, Index c) {

@@ -17,10 +17,10 @@ namespace lcl {
 namespace {
 
 using Decimater = OpenMesh::Decimater::DecimaterT<FitMesh>;
-constexpr float largest_turn = 45.0F;  // degrees
+constexpr float largest_aspect = 4.0F;         // longest side over the height on it
+constexpr double square_of_grading = 4.0 * 4;  // of the lengths of edges that meet
 constexpr std::size_t least_vertices = 4;
 constexpr double shape_weight = 1e-8;
-constexpr float largest_aspect = 4.0F;  // longest side over the height on it
 
 /// Keeps the boundary where it is: a vertex of it may only go along it, as long as all that went before stays within the tolerance of the edge that is left.
 class BoundaryModule : public OpenMesh::Decimater::ModBaseT<FitMesh> {
@@ -81,6 +81,40 @@ public:
     }
 };
 
+/// No edge becomes much longer than its neighbours: curves along creases and surfaces swing beyond a short edge before a long one.
+class GradingModule : public OpenMesh::Decimater::ModBaseT<FitMesh> {
+public:
+    using Base = OpenMesh::Decimater::ModBaseT<FitMesh>;
+    using CollapseInfo = OpenMesh::Decimater::CollapseInfoT<FitMesh>;
+    using Handle = OpenMesh::Decimater::ModHandleT<GradingModule>;
+
+    explicit GradingModule(FitMesh& mesh) : Base(mesh, true) {}
+    const std::string& name() const override {
+        static const std::string name = "Grading";
+        return name;
+    }
+
+    float collapse_priority(const CollapseInfo& collapse) override {
+        double longest = 0;
+        for (const OpenMesh::VertexHandle v : mesh().vv_range(collapse.v0)) {
+            if (v == collapse.v1) continue;
+            const double length = (mesh().point(v) - collapse.p1).sqrnorm();
+            longest = std::max(longest, length);
+            if (length > square_of_grading * shortest_edge(v, collapse.v0)) return Base::ILLEGAL_COLLAPSE;
+        }
+        return longest > square_of_grading * shortest_edge(collapse.v1, collapse.v0) ? Base::ILLEGAL_COLLAPSE : Base::LEGAL_COLLAPSE;
+    }
+
+private:
+    /// Square of its length, the one to `left_out` not counted.
+    double shortest_edge(OpenMesh::VertexHandle vertex, OpenMesh::VertexHandle left_out) {
+        double shortest = DBL_MAX;
+        for (const OpenMesh::VertexHandle v : mesh().vv_range(vertex))
+            if (v != left_out) shortest = std::min(shortest, (mesh().point(v) - mesh().point(vertex)).sqrnorm());
+        return shortest;
+    }
+};
+
 class StopOnRequest : public OpenMesh::Decimater::Observer {
 public:
     explicit StopOnRequest(const std::function<bool(std::size_t)>& progress) : Observer(4096), progress_(progress) {}
@@ -92,24 +126,34 @@ private:
     bool stopped_ = false;
 };
 
-/// bounded: by the tolerance; else down to `least` vertices.
-void collapse(FitMesh& mesh, bool bounded, double tolerance, std::size_t least, const std::function<bool(std::size_t)>& progress) {
+/// What a collapse must keep to.
+struct Limits {
+    double tolerance;   ///< of removed vertices and boundaries; DBL_MAX: none
+    float turn;         ///< of a triangle's normal, degrees
+    bool keeps_shapes;  ///< no slivers, no edge much longer than its neighbours
+};
+
+void collapse(FitMesh& mesh, const Limits& limits, std::size_t least, const std::function<bool(std::size_t)>& progress) {
     Decimater decimater(mesh);
     PriorityModule::Handle priority;
     OpenMesh::Decimater::ModNormalFlippingT<FitMesh>::Handle flipping;
     OpenMesh::Decimater::ModAspectRatioT<FitMesh>::Handle aspect;
     OpenMesh::Decimater::ModHausdorffT<FitMesh>::Handle hausdorff;
+    GradingModule::Handle grading;
     BoundaryModule::Handle boundary;
     decimater.add(priority);
     decimater.add(flipping);
-    decimater.module(flipping).set_max_normal_deviation(largest_turn);
-    decimater.add(aspect);
-    decimater.module(aspect).set_aspect_ratio(largest_aspect);
+    decimater.module(flipping).set_max_normal_deviation(limits.turn);
+    if (limits.keeps_shapes) {
+        decimater.add(aspect);
+        decimater.module(aspect).set_aspect_ratio(largest_aspect);
+        decimater.add(grading);
+    }
     decimater.add(boundary);
-    decimater.module(boundary).set_tolerance(bounded ? tolerance : DBL_MAX);
-    if (bounded) {
+    decimater.module(boundary).set_tolerance(limits.tolerance);
+    if (limits.tolerance < DBL_MAX) {
         decimater.add(hausdorff);
-        decimater.module(hausdorff).set_tolerance(tolerance);
+        decimater.module(hausdorff).set_tolerance(limits.tolerance);
     }
     StopOnRequest observer(progress);
     decimater.set_observer(&observer);
@@ -134,8 +178,10 @@ void simplify(FitMesh& mesh, const SimplifyOptions& options) {
         mesh.property(given, vertex) = mesh.point(vertex);
         mesh.point(vertex) *= scale;
     }
-    collapse(mesh, true, options.tolerance * scale, least_vertices, options.progress);
-    if (options.max_vertices > 0 && mesh.n_vertices() > options.max_vertices) collapse(mesh, false, 0, options.max_vertices, options.progress);
+    collapse(mesh, {options.tolerance * scale, 45, true}, least_vertices, options.progress);
+    // Beyond the tolerance the mesh keeps its shapes for as long as it can.
+    for (const Limits& limits : {Limits{DBL_MAX, 45, true}, Limits{DBL_MAX, 90, false}, Limits{DBL_MAX, 180, false}})
+        if (options.max_vertices > 0 && mesh.n_vertices() > options.max_vertices) collapse(mesh, limits, options.max_vertices, options.progress);
     for (const OpenMesh::VertexHandle vertex : mesh.vertices()) mesh.point(vertex) = mesh.property(given, vertex);
     mesh.remove_property(given);
 }

@@ -16,8 +16,9 @@ struct SimplifyOptions {
 };
 
 /// Half-edge collapses in the order of their quadric error (Garland & Heckbert 1997; OpenMesh's decimater), so that the vertices that are left are some of
-/// those that were there. No collapse turns a triangle's normal by more than 45 degrees or leaves slivers, and the boundary stays within the tolerance of where
-/// it was. 20 to 100 microseconds a vertex.
+/// those that were there. Within the tolerance no collapse turns a triangle's normal by more than 45 degrees, leaves slivers or edges of more than four times
+/// their neighbours' length, and the boundary stays where it was; beyond it these give way one after the other. Parts of the surface, their handles and
+/// boundary loops stay, so more than max_vertices may be left. 20 to 100 microseconds a vertex.
 void simplify(FitMesh& mesh, const SimplifyOptions& options);
 
 }  // namespace lcl

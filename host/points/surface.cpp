@@ -246,7 +246,9 @@ private:
         if (report().converged) return false;
         const std::string far = far_points();
         if (options_.max_vertices > 0 && mesh_.n_vertices() >= static_cast<std::size_t>(options_.max_vertices)) {
-            report().message = far + ": " + std::to_string(mesh_.n_vertices()) + " vertices, as many as are allowed, do not reach it";
+            const bool is_more = mesh_.n_vertices() > static_cast<std::size_t>(options_.max_vertices);
+            report().message = far + ": " + std::to_string(mesh_.n_vertices()) + " vertices, as many as are allowed" +
+                               (is_more ? " or as few as the parts and boundary loops of the mesh take" : "") + ", do not reach it";
             return false;
         }
         if (report().rounds >= options_.max_rounds) {
