@@ -35,10 +35,12 @@ void say_cloud(Job& job, lcl_cloud cloud) {
     for (int index = 0; index < lcl_cloud_note_count(cloud); ++index) warn(job, of_input(job, lcl_cloud_note(cloud, index)));
 }
 
+/// Exit code 2 where there is no such engine, or where it has no such option.
 Engine engine_of_options(Job& job) {
     std::vector<std::string> warnings;
     Engine engine = choose_engine(job.options.engine, warnings);
     for (const std::string& warning : warnings) warn(job, warning);
+    for (const auto& setting : job.options.engine_options) require_option(engine, setting.first);
     return engine;
 }
 
@@ -191,11 +193,11 @@ void note_alpha(Job& job, lcl_scheme_options scheme, double alpha) {
 }  // namespace
 
 void run_surface(Job& job) {
+    const Engine engine = engine_of_options(job);  // wrong usage is told before any work
+    note_parameters(job, engine);
     DeviceOpening device(job);
     const Cloud cloud = read_cloud(job);
     say_cloud(job, cloud.get());
-    const Engine engine = engine_of_options(job);
-    note_parameters(job, engine);
     const lcl_scheme_options scheme = scheme_of_options(job);
     const Context context = device.finish();
     say_scheme(job);
