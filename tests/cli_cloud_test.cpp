@@ -203,10 +203,13 @@ TEST_CASE("surface writes a control mesh whose limit surface is within the toler
     CHECK(fit.at("outside") == 0);
     CHECK(fit.at("rounds") >= 1);
     CHECK(fit.at("interpolation_error").get<double>() <= 1e-6 * diagonal);
+    CHECK(report.at("max_error") == fit.at("interpolation_error"));
+    CHECK(report.at("solver") == "auto");
     CHECK(fit.at("approximation") == json({{"vertices", 258}, {"faces", 512}, {"components", 1}, {"boundary_loops", 0}}));
     for (const char* count : {"duplicates", "left_out", "unused", "filled_holes", "dropped_faces", "split_vertices"}) CHECK(fit.at(count) == 0);
     for (const char* phase : {"approximate", "simplify", "solve", "measure", "refine"}) CHECK(fit.at("seconds").at(phase) >= 0);
     CHECK(fit.at("seconds").at("total") > 0);
+    CHECK(report.at("seconds").at("solve") <= fit.at("seconds").at("solve"));  // the same without the building of kernels
 
     const std::vector<Point> control = obj_points(folder.read("out.obj"));
     CHECK(control.size() < 258);
@@ -301,7 +304,14 @@ TEST_CASE("surface stops at the vertices that it may have, with a warning", "[cl
     CHECK(fit.at("max") > fit.at("tolerance"));
     CHECK(fit.at("outside") > 0);
     check_distances(report, distances(folder, "out.obj", "in.xyz", "--scheme doo-sabin"));
-    CHECK(surface_report(folder, "in.xyz -o out.obj --tolerance 2e-2 --vertices 250").at("converged") == true);
+    const std::string looser = "in.xyz -o out.obj --tolerance 2e-2 ";
+    const json few = surface_report(folder, looser + "--vertices 250");
+    CHECK(few.at("converged") == true);
+    CHECK(few.at("fit").at("vertices") <= 250);
+    const json fit_without = surface_report(folder, looser).at("fit");
+    const std::string mesh_without = folder.read("out.obj");
+    CHECK(surface_report(folder, looser + "--vertices 1000000").at("fit").at("vertices") == fit_without.at("vertices"));
+    CHECK(folder.read("out.obj") == mesh_without);  // a bound that is not reached changes nothing
 }
 
 TEST_CASE("a tolerance that is not reached is exit code 4, and --keep-going writes what there is", "[cli][cli_surface][exit]") {
@@ -320,6 +330,31 @@ TEST_CASE("a tolerance that is not reached is exit code 4, and --keep-going writ
     CHECK(is_one_failure(outcome));
     CHECK_FALSE(obj_points(folder.read("out.obj")).empty());
     CHECK(json::parse(folder.read("report.json")).at("fit").at("max").get<double>() > 0);
+}
+
+TEST_CASE("a surface whose solve fails tells that, and not how far points are", "[cli][cli_surface][exit]") {
+    const Folder folder;
+    put(folder, torus(8, 6));
+    const std::string arguments = "in.xyz -o out.obj --max-iter 1 --tolerance 1e-5 --quiet --report report.json";  // where some twenty are needed
+    Outcome outcome = surface(folder, arguments);
+    CHECK(outcome.exit_code == 4);
+    CHECK(is_one_failure(outcome));
+    CHECK(contains(outcome.err, "after 1 iteration"));
+    CHECK_FALSE(folder.has("out.obj"));
+    json report = json::parse(folder.read("report.json"));
+    CHECK(report.at("status") == "not-converged");
+    CHECK_FALSE(report.contains("mesh"));
+    CHECK(report.at("diagonal").get<double>() > 0);
+    CHECK(report.at("max_error").is_null());
+    CHECK(report.at("fit").at("max").is_null());
+    outcome = surface(folder, arguments + " --keep-going");
+    CHECK(outcome.exit_code == 4);
+    CHECK(is_one_failure(outcome));
+    CHECK(contains(outcome.err, "after 1 iteration"));
+    CHECK(folder.has("out.obj"));
+    report = json::parse(folder.read("report.json"));
+    CHECK(report.at("fit").at("outside") > 0);
+    CHECK(report.at("max_error").get<double>() > 1e-6 * report.at("diagonal").get<double>());
 }
 
 TEST_CASE("surface fills holes up to the size that is asked for", "[cli][cli_surface]") {
@@ -404,7 +439,7 @@ TEST_CASE("surface tells what an engine left out or gave wrongly", "[cli][cli_su
     put(folder, shape);
     folder.file("faces.txt", rows_of(shape.faces) + "0 1 999\n");
     const Outcome outside = surface(folder, "in.xyz -o out2.obj --quiet");
-    CHECK(outside.exit_code != 0);
+    CHECK(outside.exit_code == 1);  // no change of the command line cures it
     CHECK(is_one_failure(outside));
     CHECK_FALSE(folder.has("out2.obj"));
     folder.file("faces.txt", "");
@@ -457,41 +492,41 @@ TEST_CASE("wrong usage of surface is exit code 2 with one line", "[cli][cli_surf
     const Folder folder;
     put(folder, sphere(2));
     folder.file("list.txt", "0\n");
-    const auto [arguments, part] =
-        GENERATE(table<std::string, std::string>({{"in.xyz", "--output"},
-                                                  {"-o out.obj", "POINTS"},
-                                                  {"in.xyz -o out.xyz", ".xyz"},
-                                                  {"in.stl -o out.obj", "points are read from"},
-                                                  {"in -o out.obj", "points are read from"},
-                                                  {"in.xyz -o out.obj --tolerance 0", "--tolerance"},
-                                                  {"in.xyz -o out.obj --tolerance=-1e-3", "--tolerance"},
-                                                  {"in.xyz -o out.obj --tolerance inf", "--tolerance"},
-                                                  {"in.xyz -o out.obj --tolerance nan", "--tolerance"},
-                                                  {"in.xyz -o out.obj --vertices 3", "--vertices"},
-                                                  {"in.xyz -o out.obj --vertices 10.5", "--vertices"},
-                                                  {"in.xyz -o out.obj --fill-holes 2", "--fill-holes"},
-                                                  {"in.xyz -o out.obj --fill-holes 1001", "--fill-holes"},
-                                                  {"in.xyz -o out.obj --fair 1e-3", "least-squares"},
-                                                  {"in.xyz -o out.obj --fit least-squares --fair=-1", "--fair"},
-                                                  {"in.xyz -o out.obj --fit best", "--fit"},
-                                                  {"in.xyz -o out.obj --engine-option radius", "KEY=VALUE"},
-                                                  {"in.xyz -o out.obj --engine-option =3", "KEY=VALUE"},
-                                                  {"in.xyz -o out.obj --engine-option faces=faces.txt --engine-option faces=faces.txt", "twice"},
-                                                  {"in.xyz -o out.obj --engine ''", "--engine"},
-                                                  {"in.xyz -o out.obj --engine nothing", "given-faces"},
-                                                  {"in.xyz -o out.obj --engine-option roundness=3", "roundness"},
-                                                  {"in.xyz -o out.obj --lambda 0.3", "--lambda"},
-                                                  {"in.xyz -o out.obj --creases list.txt", "--crease-angle"},
-                                                  {"in.xyz -o out.obj --corners list.txt", "--crease-angle"},
-                                                  {"in.xyz -o out.obj --channels colours", "--channels"},
-                                                  {"in.xyz -o out.obj --scheme loop --alpha 0.5", "--alpha"},
-                                                  {"in.xyz -o out.obj --refined", "--refined"},
-                                                  {"in.xyz -o out.obj --format xyz", "--format"},
-                                                  {"- -o out.obj", "ply, xyz, csv, off, obj or pts"},
-                                                  {"in.xyz -o -", "obj, off, ply, stl or om"},
-                                                  {"- -o - --format xyz", "obj, off or ply"},
-                                                  {"- -o out.obj --format stl", "ply, xyz, csv, off, obj or pts"},
-                                                  {"in.xyz -o - --format csv", "obj, off, ply, stl or om"}}));
+    const auto [arguments, part] = GENERATE(
+        table<std::string, std::string>({{"in.xyz", "--output"},
+                                         {"-o out.obj", "POINTS"},
+                                         {"in.xyz -o out.xyz", ".xyz"},
+                                         {"in.stl -o out.obj", "points are read from"},
+                                         {"in -o out.obj", "points are read from"},
+                                         {"in.xyz -o out.obj --tolerance 0", "--tolerance"},
+                                         {"in.xyz -o out.obj --tolerance=-1e-3", "--tolerance"},
+                                         {"in.xyz -o out.obj --tolerance inf", "--tolerance"},
+                                         {"in.xyz -o out.obj --tolerance nan", "--tolerance"},
+                                         {"in.xyz -o out.obj --vertices 3", "--vertices"},
+                                         {"in.xyz -o out.obj --vertices 10.5", "--vertices"},
+                                         {"in.xyz -o out.obj --fill-holes 2", "--fill-holes"},
+                                         {"in.xyz -o out.obj --fill-holes 1001", "--fill-holes"},
+                                         {"in.xyz -o out.obj --fair 1e-3", "least-squares"},
+                                         {"in.xyz -o out.obj --fit least-squares --fair=-1", "--fair"},
+                                         {"in.xyz -o out.obj --fit best", "--fit"},
+                                         {"in.xyz -o out.obj --engine-option radius", "KEY=VALUE"},
+                                         {"in.xyz -o out.obj --engine-option =3", "KEY=VALUE"},
+                                         {"in.xyz -o out.obj --engine-option faces=faces.txt --engine-option faces=faces.txt", "twice"},
+                                         {"in.xyz -o out.obj --engine ''", "--engine"},
+                                         {"missing.xyz -o out.obj --engine nothing", "given-faces"},
+                                         {"missing.xyz -o out.obj --engine-option roundness=3", "'roundness': its options are faces, outliers, wait, warn"},
+                                         {"in.xyz -o out.obj --lambda 0.3", "--lambda"},
+                                         {"in.xyz -o out.obj --creases list.txt", "--crease-angle"},
+                                         {"in.xyz -o out.obj --corners list.txt", "--crease-angle"},
+                                         {"in.xyz -o out.obj --channels colours", "--channels"},
+                                         {"in.xyz -o out.obj --scheme loop --alpha 0.5", "--alpha"},
+                                         {"in.xyz -o out.obj --refined", "--refined"},
+                                         {"in.xyz -o out.obj --format xyz", "--format"},
+                                         {"- -o out.obj", "ply, xyz, csv, off, obj or pts"},
+                                         {"in.xyz -o -", "obj, off, ply, stl or om"},
+                                         {"- -o - --format xyz", "obj, off or ply"},
+                                         {"- -o out.obj --format stl", "ply, xyz, csv, off, obj or pts"},
+                                         {"in.xyz -o - --format csv", "obj, off, ply, stl or om"}}));
     const Outcome outcome = run(folder, "surface --quiet " + arguments, given_faces);
     INFO(arguments << "\n" << outcome.err);
     CHECK(outcome.exit_code == 2);

@@ -533,7 +533,7 @@ TEST_CASE("surfaces are fitted with engines that are functions", "[cpp][cloud]")
     const Cloud uneven(std::vector<double>{1, 0, 0.1, -1, 0.25, 0, 0, 1.5, 0.3, 0.7, -1, 0, 0, 0, 1.1, 0, 0, -2});
     const Fit far = fit_surface(context, uneven, Engine(c_engine), strict);
     CHECK(far.report.status == LCL_ERROR_NOT_CONVERGED);
-    CHECK_FALSE(far.report.message.empty());
+    CHECK(far.report.message.find(" iterations") != std::string::npos);  // the solve's reason, which comes first
     CHECK(far.mesh.vertex_count() == 6);
     CHECK(status_of([&] { far.report.require_ok(); }) == LCL_ERROR_NOT_CONVERGED);
 }

@@ -62,11 +62,14 @@ struct Result {
     Values points;
     std::vector<std::int32_t> triangles, left_out;
     int progress_calls = 0, stop_at = 0;  ///< stop_at: the progress call that asks to stop, from 1; 0: none
+    std::function<void()> meanwhile;      ///< every progress call does this
 };
 
-Result run(const Engine& engine, const Values& points, const Settings& settings = {}, const Values& normals = {}, int stop_at = 0) {
+Result run(const Engine& engine, const Values& points, const Settings& settings = {}, const Values& normals = {}, int stop_at = 0,
+           const std::function<void()>& meanwhile = {}) {
     Result result;
     result.stop_at = stop_at;
+    result.meanwhile = meanwhile;
     result.points = points;
     lcl_engine_sink sink = {};
     sink.struct_size = sizeof(sink);
@@ -74,6 +77,7 @@ Result run(const Engine& engine, const Values& points, const Settings& settings 
     sink.progress = [](void* self, double fraction) -> std::int32_t {
         CHECK(fraction <= 1.0);
         auto& here = *static_cast<Result*>(self);
+        if (here.meanwhile) here.meanwhile();
         return ++here.progress_calls != here.stop_at;
     };
     sink.give = [](void* self, std::int32_t count, const double* values, std::int32_t triangle_count, const std::int32_t* triangles) {
@@ -277,8 +281,9 @@ TEST_CASE("options that an engine does not have or take are refused in one sente
     CHECK(contains(unknown.sentence, "'no-such-key'"));
     CHECK(contains(unknown.sentence, "outlier-neighbours"));  // the list of those there are
     CHECK_FALSE(unknown.given);
-    const Settings bad = {{"outliers", "-1"},  {"outliers", ""},    {"outliers", "many"},         {"outliers", "1x"},
-                          {"outliers", "nan"}, {"outliers", "1,2"}, {"outlier-neighbours", "2.5"}};
+    const std::string outliers = name == "advancing-front" ? "outlier-percent" : "outlier-deviations";
+    const Settings bad = {{outliers, "-1"},  {outliers, ""},    {outliers, "many"},           {outliers, "1x"},
+                          {outliers, "nan"}, {outliers, "1,2"}, {"outlier-neighbours", "2.5"}};
     for (const auto& setting : bad) {
         const Result result = run(*engine, points, {setting});
         INFO(result.sentence);
@@ -308,6 +313,17 @@ TEST_CASE("a caller can stop an engine at every report of its progress", "[engin
     CHECK(run(*engine, points).status == LCL_ENGINE_OK);  // and it works afterwards
 }
 
+TEST_CASE("a function of the caller may run another engine", "[engines]") {
+    const auto outer = built("poisson"), inner = built("ball-pivoting");
+    if (!outer || !inner) return;
+    const Values points = sphere(200);
+    std::vector<std::int32_t> statuses;
+    const auto run_inner = [&] { statuses.push_back(run(*inner, points).status); };
+    CHECK(run(*outer, points, {}, {}, 0, run_inner).status == LCL_ENGINE_OK);
+    REQUIRE(statuses.size() > 1);
+    CHECK(std::count(statuses.begin(), statuses.end(), LCL_ENGINE_OK) == static_cast<std::ptrdiff_t>(statuses.size()));
+}
+
 TEST_CASE("engines print nothing", "[engines]") {
     const std::string name = GENERATE("advancing-front", "poisson", "ball-pivoting");
     const auto engine = built(name);
@@ -315,7 +331,7 @@ TEST_CASE("engines print nothing", "[engines]") {
     Values line;
     for (int i = 0; i < 20; ++i) line.insert(line.end(), {double(i), 0.0, 0.0});
     CHECK(printed_by([&] {
-              run(*engine, sphere(300, 1.0, {0, 0, 0}, 0.3), {{"outliers", "1"}});
+              run(*engine, sphere(300, 1.0, {0, 0, 0}, 0.3), {{name == "advancing-front" ? "outlier-percent" : "outlier-deviations", "1"}});
               run(*engine, line);  // not what the interface allows
           }) == "");
 }
@@ -411,10 +427,10 @@ TEST_CASE("no triangle of the advancing front is larger than its bound", "[engin
 }
 
 TEST_CASE("points far from all others are left out on request", "[engines]") {
-    const auto [name, setting] = GENERATE(table<std::string, std::pair<std::string, std::string>>({{"advancing-front", {"outliers", "2"}},
+    const auto [name, setting] = GENERATE(table<std::string, std::pair<std::string, std::string>>({{"advancing-front", {"outlier-percent", "2"}},
                                                                                                    {"advancing-front", {"outlier-distance", "4"}},
-                                                                                                   {"poisson", {"outliers", "3"}},
-                                                                                                   {"ball-pivoting", {"outliers", "3"}}}));
+                                                                                                   {"poisson", {"outlier-deviations", "3"}},
+                                                                                                   {"ball-pivoting", {"outlier-deviations", "3"}}}));
     const auto engine = built(name);
     if (!engine) return;
     Values points = sphere(490);

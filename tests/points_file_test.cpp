@@ -118,7 +118,6 @@ TEST_CASE("normals and colours stand beside each other in either order, and what
     };
     for (const auto& [first, second, warning] :
          {Layout{"0 0 0 0 0 1 255 0 51", "1 2 3 0.6 0.8 0 0 102 0", ""}, Layout{"0 0 0 255 0 51 0 0 1", "1 2 3 0 102 0 0.6 0.8 0", ""},
-          Layout{"0 0 0 -9 255 0 51 0 0 1", "1 2 3 7.5 0 102 0 0.6 0.8 0", "column 4 (intensity) was left out"},
           Layout{"0 0 0 0 0 1 255 0 51 8", "1 2 3 0.6 0.8 0 0 102 0 7", "column 10 was left out"},
           Layout{"0 0 0 0 0 1 255 0 51 8 tree 1", "1 2 3 0.6 0.8 0 0 102 0 7 house 2", "columns 10 to 12 were left out"}}) {
         const std::string rows = std::string(first) + "\n" + second + "\n";
@@ -132,12 +131,26 @@ TEST_CASE("normals and colours stand beside each other in either order, and what
     }
 }
 
-TEST_CASE("intensity stands before colours or normals", "[points]") {
+TEST_CASE("intensity stands before colours or normals in .pts files", "[points]") {
     const PointCloud coloured = pts("2\n0 0 0 120 255 0 51\n1 2 3 90 0 102 0\n");
     CHECK(coloured.colours == Numbers{1, 0, 0.2, 0, 0.4, 0});
     CHECK(coloured.warnings == std::vector<std::string>{"column 4 (intensity) was left out"});
-    CHECK(xyz("0 0 0 5 0 0 1\n1 2 3 -7 0.6 0.8 0\n").normals == Numbers{0, 0, 1, 0.6, 0.8, 0});
-    CHECK(xyz("0 0 0 5 0 0 0\n1 2 3 -7 0 0 0\n").normals.empty());
+    const PointCloud both = pts("2\n0 0 0 -9 255 0 51 0 0 1\n1 2 3 7.5 0 102 0 0.6 0.8 0\n");
+    CHECK(both.colours == coloured.colours);
+    CHECK(both.normals == Numbers{0, 0, 1, 0.6, 0.8, 0});
+    CHECK(both.warnings == coloured.warnings);
+    CHECK(pts("2\n0 0 0 5 0 0 1\n1 2 3 -7 0.6 0.8 0\n").normals == Numbers{0, 0, 1, 0.6, 0.8, 0});
+    CHECK(pts("2\n0 0 0 5 0 0 0\n1 2 3 -7 0 0 0\n").normals.empty());
+}
+
+TEST_CASE("a single column behind normals or colours is left out", "[points]") {
+    const PointCloud opaque = xyz("0 0 0 255 0 51 255\n1 2 3 0 102 0 255\n");  // red, green, blue, alpha
+    CHECK(opaque.colours == Numbers{1, 0, 0.2, 0, 0.4, 0});
+    CHECK(opaque.warnings == std::vector<std::string>{"column 7 was left out"});
+    const PointCloud both = xyz("0 0 0 0 0 1 255 0 51 128\n1 2 3 0.6 0.8 0 0 102 0 0\n");
+    CHECK(both.normals == Numbers{0, 0, 1, 0.6, 0.8, 0});
+    CHECK(both.colours == opaque.colours);
+    CHECK(both.warnings == std::vector<std::string>{"column 10 was left out"});
     const PointCloud curved = xyz("0 0 0 0 0 1 0.01\n1 2 3 0.6 0.8 0 0.5\n");  // normals and curvature
     CHECK(curved.normals == Numbers{0, 0, 1, 0.6, 0.8, 0});
     CHECK(curved.warnings == std::vector<std::string>{"column 7 was left out"});

@@ -43,9 +43,9 @@ namespace names = CGAL::parameters;
 const Option options[] = {
     {"beta", "0.52", Kind::number, 0.0, 1.57, "radians; a triangle that folds by less than this competes by the radius of its Delaunay sphere alone"},
     {"perimeter-bound", "0", Kind::number, 0.0, no_limit, "no triangle has a larger perimeter than this, model units (0: any)"},
-    {"outliers", "0", Kind::number, 0.0, 99.0, "percent of the points to leave out: those farthest from their neighbours"},
+    {"outlier-percent", "0", Kind::number, 0.0, 99.0, "of the points are left out: those farthest from their neighbours"},
     {"outlier-distance", "0", Kind::number, 0.0, no_limit,
-     "leave out only points whose neighbours are so many times farther away than is usual (0: as `outliers` says alone)"},
+     "leave out only points whose neighbours are so many times farther away than is usual (0: as `outlier-percent` says alone)"},
     {"outlier-neighbours", "24", Kind::whole, 2.0, 1000.0, "how many neighbours that looks at"},
     {"smooth", "0", Kind::zero_or_whole, 6.0, 1000.0,
      "against noise: each point moves to a quadric through so many neighbours (0: none); distances are then to the points as they were"}};
@@ -67,7 +67,7 @@ auto callback(const Call& call, Share share) {
 
 /// Takes outliers away from `kept`, indices into `points`, and reports them.
 void remove_outliers(const Call& call, const std::vector<Point>& points, std::vector<std::size_t>& kept) {
-    double percent = call.options.number("outliers");
+    double percent = call.options.number("outlier-percent");
     const double distance = call.options.number("outlier-distance");
     if (percent == 0.0 && distance == 0.0) return;
     if (percent == 0.0) percent = 100.0;
@@ -83,7 +83,8 @@ void remove_outliers(const Call& call, const std::vector<Point>& points, std::ve
     kept.erase(first, kept.end());
     std::sort(kept.begin(), kept.end());
     if (kept.size() < 4)
-        throw Failure{LCL_ENGINE_OPTION, "the engine's options leave " + std::to_string(kept.size()) + " points after the outliers: lower `outliers`"};
+        throw Failure{LCL_ENGINE_OPTION, "the engine's options leave " + std::to_string(kept.size()) +
+                                             " points after the outliers: " + (distance > 0.0 ? "raise `outlier-distance`" : "lower `outlier-percent`")};
 }
 
 /// Moves the points of `kept`; returns whether it did.

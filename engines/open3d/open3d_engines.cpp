@@ -13,11 +13,13 @@
 #include <cmath>
 #include <cstdint>
 #include <iostream>
+#include <memory>
 #include <mutex>
 #include <numeric>
 #include <queue>
 #include <streambuf>
 #include <string>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -37,8 +39,8 @@ using open3d::geometry::PointCloud;
 using open3d::geometry::TriangleMesh;
 
 constexpr Option neighbours_option = {"neighbours", "20", Kind::whole, 3.0, 1000.0, "how many points each normal is estimated from, where the cloud has none"};
-constexpr Option outliers_option = {"outliers", "0",      Kind::number,
-                                    0.0,        no_limit, "leave out points so many standard deviations farther from others than is usual (0: none)"};
+constexpr Option outliers_option = {
+    "outlier-deviations", "0", Kind::number, 0.0, no_limit, "leave out points so many standard deviations farther from others than is usual (0: none)"};
 constexpr Option outlier_neighbours_option = {"outlier-neighbours", "20", Kind::whole, 1.0, 1000.0, "how many neighbours that looks at"};
 
 const Option poisson_options[] = {
@@ -53,7 +55,8 @@ const Option ball_options[] = {{"radii", "2,4,8", Kind::list, 0.01, 1e6, "of the
                                outliers_option,
                                outlier_neighbours_option};
 
-/// Drops the warnings that PoissonRecon, inside Open3D, writes to std::cerr, each as one string and a line's end; passes all else on.
+/// Drops the warnings that PoissonRecon, inside Open3D, writes to std::cerr, each as one string and a line's end; passes all else on. There is no other way to
+/// it than std::cerr of the whole process: what other threads write meanwhile comes through here, too, and may be mixed up.
 class WarningFilter : public std::streambuf {
 public:
     WarningFilter() : target_(std::cerr.rdbuf(this)) {}
@@ -76,7 +79,8 @@ private:
     bool dropped_ = false;
 };
 
-/// While it lives, Open3D and PoissonRecon print nothing. One run at a time: both keep such things once for the whole process.
+/// While it lives, Open3D prints nothing. One at a time: how much it prints is kept once for the whole process. So it must not live while a function of the
+/// caller runs, which may run an engine itself.
 class Silence {
 public:
     Silence() : lock_(mutex()), verbosity_(open3d::utility::VerbosityLevel::Error) { verbosity_.Enter(); }
@@ -91,8 +95,14 @@ private:
     }
     std::lock_guard<std::mutex> lock_;
     open3d::utility::VerbosityContextManager verbosity_;
-    WarningFilter filter_;
 };
+
+/// What `work` returns, which calls Open3D and no function of the caller.
+template <typename Work>
+auto quietly(Work work) {
+    const Silence silence;
+    return work();
+}
 
 /// The cloud in a frame of its own, and what each of its points was.
 struct Cloud {
@@ -113,11 +123,13 @@ Cloud read_cloud(const lcl_engine_points& in, const Frame& frame) {
 }
 
 void remove_outliers(const Call& call, Cloud& cloud) {
-    const double deviations = call.options.number("outliers");
+    const double deviations = call.options.number("outlier-deviations");
     if (deviations == 0.0) return;
-    const auto [kept_points, kept] = cloud.points.RemoveStatisticalOutliers(static_cast<std::size_t>(call.options.whole("outlier-neighbours")), deviations);
+    const auto neighbours = static_cast<std::size_t>(call.options.whole("outlier-neighbours"));
+    const auto [kept_points, kept] = quietly([&] { return cloud.points.RemoveStatisticalOutliers(neighbours, deviations); });
     if (kept.size() < 4)
-        throw Failure{LCL_ENGINE_OPTION, "the engine's options leave " + std::to_string(kept.size()) + " points after the outliers: raise `outliers`"};
+        throw Failure{LCL_ENGINE_OPTION,
+                      "the engine's options leave " + std::to_string(kept.size()) + " points after the outliers: raise `outlier-deviations`"};
     std::vector<char> is_kept(cloud.indices.size(), 0);
     for (const std::size_t index : kept) is_kept[index] = 1;
     std::vector<std::int32_t> outliers;
@@ -191,7 +203,7 @@ void turn_outwards(PointCloud& cloud, const std::vector<std::int32_t>& parts) {
 void make_normals(const Call& call, PointCloud& cloud) {
     if (!cloud.normals_.empty()) return;
     const int neighbours = static_cast<int>(std::min<std::size_t>(call.options.whole("neighbours"), cloud.points_.size()));
-    cloud.EstimateNormals(open3d::geometry::KDTreeSearchParamKNN(neighbours));
+    quietly([&] { cloud.EstimateNormals(open3d::geometry::KDTreeSearchParamKNN(neighbours)); });
     call.progress(-1.0);
     turn_outwards(cloud, make_consistent(cloud, neighbours));
 }
@@ -242,13 +254,18 @@ std::vector<char> near_points(const TriangleMesh& mesh, const PointCloud& cloud,
     return near;
 }
 
+std::shared_ptr<TriangleMesh> poisson_mesh(const PointCloud& cloud, int depth) {
+    return quietly([&] {
+        const WarningFilter filter;
+        // One thread: with more the sums, and so the vertices, would differ from run to run.
+        return std::get<0>(TriangleMesh::CreateFromPointCloudPoisson(cloud, static_cast<std::size_t>(depth), 0.0f, 1.1f, false, 1));
+    });
+}
+
 void run_poisson(const Call& call) {
-    const Silence silence;
     const Frame frame(call.points);
     const Cloud cloud = prepare(call, frame);
-    // One thread: with more the sums, and so the vertices, would differ from run to run.
-    const auto [mesh, densities] =
-        TriangleMesh::CreateFromPointCloudPoisson(cloud.points, static_cast<std::size_t>(octree_depth(call, cloud.indices.size())), 0.0f, 1.1f, false, 1);
+    const std::shared_ptr<TriangleMesh> mesh = poisson_mesh(cloud.points, octree_depth(call, cloud.indices.size()));
     call.progress(-1.0);
     const std::vector<char> near = near_points(*mesh, cloud.points, call.options.number("trim"));
     std::vector<Triangle> triangles;
@@ -264,15 +281,14 @@ void run_poisson(const Call& call) {
 }
 
 void run_ball_pivoting(const Call& call) {
-    const Silence silence;
     const Frame frame(call.points);
     const Cloud cloud = prepare(call, frame);
-    const std::vector<double> nearest = cloud.points.ComputeNearestNeighborDistance();
+    const std::vector<double> nearest = quietly([&] { return cloud.points.ComputeNearestNeighborDistance(); });
     const double spacing = std::accumulate(nearest.begin(), nearest.end(), 0.0) / static_cast<double>(nearest.size());
     std::vector<double> radii = call.options.list("radii");
     std::sort(radii.begin(), radii.end());
     for (double& radius : radii) radius *= spacing;
-    const auto mesh = TriangleMesh::CreateFromPointCloudBallPivoting(cloud.points, radii);
+    const auto mesh = quietly([&] { return TriangleMesh::CreateFromPointCloudBallPivoting(cloud.points, radii); });
     std::vector<Triangle> triangles;
     for (const Eigen::Vector3i& corners : mesh->triangles_) {
         triangles.push_back({cloud.indices[corners[0]], cloud.indices[corners[1]], cloud.indices[corners[2]]});

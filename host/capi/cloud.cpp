@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+#include <memory>
+
 #include "host/capi/arguments.h"
 #include "host/io/points_file.h"
 

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <cmath>
 #include <optional>
 
 #include "host/cli/commands.h"
@@ -35,10 +34,12 @@ void say_cloud(Job& job, lcl_cloud cloud) {
     for (int index = 0; index < lcl_cloud_note_count(cloud); ++index) warn(job, of_input(job, lcl_cloud_note(cloud, index)));
 }
 
+/// Exit code 2 where there is no such engine, or where it has no such option.
 Engine engine_of_options(Job& job) {
     std::vector<std::string> warnings;
     Engine engine = choose_engine(job.options.engine, warnings);
     for (const std::string& warning : warnings) warn(job, warning);
+    for (const auto& setting : job.options.engine_options) require_option(engine, setting.first);
     return engine;
 }
 
@@ -120,29 +121,40 @@ lcl_surface_options fit_options(const Options& options, std::vector<lcl_engine_o
     return fit;
 }
 
-/// The control mesh, which may be missing where the status is none of success.
+/// The library builds kernels at their first use, while it solves and measures: `compiled` seconds, taken off both in proportion. What else the fit takes is
+/// among its own seconds.
+void note_seconds(Seconds& seconds, const lcl_surface_report& fit, double compiled) {
+    const double all = fit.seconds_solve + fit.seconds_measure;
+    add_seconds(seconds.compile, compiled);
+    add_seconds(seconds.solve, all > compiled ? fit.seconds_solve * (1.0 - compiled / all) : 0.0);
+}
+
+/// Without a failure there is a mesh, with one there may be.
 struct Fitted {
-    lcl_status status = LCL_OK;
+    std::optional<Failure> failure;  ///< singular, indefinite, not converged
     Mesh mesh;
 };
 
-/// The status is LCL_OK or one of the three results.
 Fitted fit_surface(Job& job, lcl_context context, lcl_cloud cloud, const Engine& engine, const lcl_scheme_options& scheme) {
-    FitProgress state{job.terminal.progress(), engine};
+    Progress& progress = job.terminal.progress();
+    FitProgress state{progress, engine};
     std::vector<lcl_engine_option> settings;
     const lcl_surface_options options = fit_options(job.options, settings, state);
     FitSummary summary;
     lcl_mesh mesh = nullptr;
     Fitted fitted;
-    {
-        const Phase phase(job, &Seconds::solve, "fitting", context);
-        fitted.status = lcl_surface(context, cloud, engine.engine, &scheme, &options, &mesh, &summary.report);
-        fitted.mesh.reset(mesh);
-    }
-    if (fitted.status == LCL_ERROR_BAD_INPUT) check_of_input(job, fitted.status);
-    if (fitted.status != LCL_OK && !is_result(fitted.status)) throw failure_of(fitted.status);
+    const double compiled = lcl_context_compile_seconds(context);
+    check_interrupt();
+    progress.begin("fitting");
+    const lcl_status status = lcl_surface(context, cloud, engine.engine, &scheme, &options, &mesh, &summary.report);
+    progress.end();
+    fitted.mesh.reset(mesh);
+    if (status == LCL_ERROR_BAD_INPUT) check_of_input(job, status);
+    if (status != LCL_OK) fitted.failure = failure_of(status);
+    if (fitted.failure && !is_result(status)) throw *fitted.failure;
+    note_seconds(job.report.seconds, summary.report, lcl_context_compile_seconds(context) - compiled);
+    summary.solver = job.options.solver;
     summary.tolerance = job.options.fit_tolerance * summary.report.diagonal;
-    if (!fitted.mesh) summary.report.rms = summary.report.p95 = summary.report.max = std::nan("");  // a solve that failed: nothing was measured
     job.report.fit = summary;
     return fitted;
 }
@@ -164,6 +176,7 @@ void say_fit(Job& job, const Engine& engine) {
     job.terminal.say("distances", length_text(fit.rms, fit.diagonal) + " rms, " + length_text(fit.p95, fit.diagonal) + " for 95 %, " +
                                       length_text(fit.max, fit.diagonal) + " at most" +
                                       part(fit.outside_count, "point outside the tolerance", "points outside the tolerance"));
+    if (job.options.crease_angle > 0.0) job.terminal.say("creases", counted(fit.creases, "edge", "edges"));
     job.terminal.say("phases", "approximate " + short_number(fit.seconds_approximate) + ", simplify " + short_number(fit.seconds_simplify) + ", solve " +
                                    short_number(fit.seconds_solve) + ", measure " + short_number(fit.seconds_measure) + ", refine " +
                                    short_number(fit.seconds_refine) + " seconds");
@@ -176,39 +189,32 @@ void note_alpha(Job& job, lcl_scheme_options scheme, double alpha) {
     note_scheme(job, scheme);
 }
 
-Failure failure_of_fit(lcl_status status, const lcl_surface_report& report) {
-    Failure failure = failure_of(status);
-    if (report.message[0] != '\0') failure.message = one_line(report.message);
-    return failure;
-}
-
 }  // namespace
 
 void run_surface(Job& job) {
     DeviceOpening device(job);
+    device.wait();
+    const Engine engine = engine_of_options(job);  // wrong usage is told before any work
+    note_parameters(job, engine);
     const Cloud cloud = read_cloud(job);
     say_cloud(job, cloud.get());
-    const Engine engine = engine_of_options(job);
-    note_parameters(job, engine);
     const lcl_scheme_options scheme = scheme_of_options(job);
     const Context context = device.finish();
     say_scheme(job);
 
     const Fitted fitted = fit_surface(job, context.get(), cloud.get(), engine, scheme);
     const lcl_surface_report& report = job.report.fit->report;
-    std::optional<Failure> failure;
-    if (fitted.status != LCL_OK) failure = failure_of_fit(fitted.status, report);
     if (fitted.mesh) {
         note_alpha(job, scheme, report.alpha);
         job.report.mesh = summary_of(fitted.mesh.get());
         warn_of_notes(job, fitted.mesh.get());
         say_fit(job, engine);
     }
-    if (!failure && !report.converged) warn(job, report.message);
-    if (failure && !(job.options.keep_going && fitted.mesh)) throw *failure;
+    if (!fitted.failure && !report.converged) warn(job, report.message);
+    if (fitted.failure && !(job.options.keep_going && fitted.mesh)) throw *fitted.failure;
     check_output_format(job, fitted.mesh.get());
     write_output(job, fitted.mesh.get());
-    if (failure) throw *failure;
+    if (fitted.failure) throw *fitted.failure;
 }
 
 }  // namespace lcl::cli

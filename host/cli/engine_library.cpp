@@ -7,6 +7,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <optional>
+#include <sstream>
 #include <utility>
 
 #include "host/cli/failure.h"
@@ -67,7 +68,7 @@ std::vector<fs::path> engine_files(std::vector<std::string>& warnings) {
     return files;
 }
 
-bool is_complete(const lcl_engine& engine) { return engine.struct_size >= sizeof(lcl_engine) && engine.name && *engine.name && engine.run; }
+bool is_complete(const lcl_engine& engine) { return engine.struct_size == sizeof(lcl_engine) && engine.name && *engine.name && engine.run; }
 
 std::string text_or_none(const char* text) { return text ? text : ""; }
 
@@ -136,6 +137,15 @@ Engine choose_engine(const std::string& name, std::vector<std::string>& warnings
         }
     }
     fail_without(name, others, warnings);
+}
+
+void require_option(const Engine& engine, const std::string& key) {
+    std::vector<std::string> keys;
+    std::istringstream lines(engine.options);
+    for (std::string line; std::getline(lines, line);) keys.push_back(line.substr(0, line.find('=')));
+    if (std::find(keys.begin(), keys.end(), key) != keys.end()) return;
+    fail(exit_usage, "--engine-option: the engine '" + engine.name + "' has no option '" + key +
+                         (keys.empty() ? "': it has none at all" : "': its options are " + join(keys, ", ")));
 }
 
 }  // namespace lcl::cli

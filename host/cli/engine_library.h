@@ -25,4 +25,7 @@ std::vector<Engine> installed_engines(std::vector<std::string>& warnings);
 /// was given, else 1: the sentence tells what is there, what is missing, and how to get it.
 Engine choose_engine(const std::string& name, std::vector<std::string>& warnings);
 
+/// Throws Failure, exit code 2, where the engine has no option of that name.
+void require_option(const Engine& engine, const std::string& key);
+
 }  // namespace lcl::cli

@@ -79,6 +79,8 @@ void check_output_format(const Job& job, lcl_mesh mesh);
 class DeviceOpening {
 public:
     explicit DeviceOpening(Job& job, std::launch policy = std::launch::async);
+    /// Waits for the driver: libraries that are loaded later cannot bring versions of what it needs.
+    void wait() const { context_.wait(); }
     /// Waits for it. Exit code 5 where there is none, or where it has no doubles and they were asked for. May be called once.
     Context finish();
 

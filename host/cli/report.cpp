@@ -81,8 +81,10 @@ Json fit_seconds_json(const lcl_surface_report& fit) {
 
 void add_fit(Json& json, const FitSummary& summary) {
     const lcl_surface_report& fit = summary.report;
+    json["solver"] = solver_name(summary.solver);
     json["converged"] = fit.converged != 0;
     json["iterations"] = fit.iterations;
+    json["max_error"] = number_or_null(fit.interpolation_error);
     json["fit"] = {{"points", fit.point_count},
                    {"rms", number_or_null(fit.rms)},
                    {"p95", number_or_null(fit.p95)},
@@ -204,10 +206,8 @@ std::string to_json(const Report& report) {
     Json json = {{"limitcl", lcl_version_string()}, {"command", report.command},   {"status", report.status},
                  {"message", report.message},       {"warnings", report.warnings}, {"where", where_json(report.vertices, report.faces)}};
     if (report.device) json["device"] = {{"platform", report.device->platform}, {"name", report.device->name}, {"version", report.device->version}};
-    if (report.mesh) {
-        json["mesh"] = mesh_json(*report.mesh);
-        json["diagonal"] = number_or_null(report.fit ? report.fit->report.diagonal : report.mesh->info.diagonal);
-    }
+    if (report.mesh) json["mesh"] = mesh_json(*report.mesh);
+    if (report.mesh || report.fit) json["diagonal"] = number_or_null(report.fit ? report.fit->report.diagonal : report.mesh->info.diagonal);
     if (!report.scheme.empty()) json["scheme"] = report.scheme;
     json["parameters"] = parameters_json(report);
     if (report.solve) add_solve(json, *report.solve);

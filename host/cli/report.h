@@ -55,7 +55,8 @@ struct KernelCheck {
 /// A surface through a cloud.
 struct FitSummary {
     lcl_surface_report report = LCL_SURFACE_REPORT_INIT;
-    double tolerance = 0.0;  ///< model units
+    double tolerance = 0.0;               ///< model units
+    lcl_solver solver = LCL_SOLVER_AUTO;  ///< that was asked for
 };
 
 /// Energies of the terms of the expansion, channel by channel.
@@ -67,7 +68,7 @@ struct SpectrumSummary {
 /// Energy of a term: that of x, y and z.
 double position_energy(const double* energies);
 
-/// Seconds by phase; 0: it did not happen, or is part of `solve` (the transfers of `limit`).
+/// Seconds by phase; 0: it did not happen, or is part of `solve` (the transfers of `limit`). `surface` has phases of its own beside: see its report.
 struct Seconds {
     double read = 0, topology = 0, compile = 0, upload = 0, solve = 0, download = 0, write = 0, total = 0;
 };

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "host/io/point_columns.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "host/parallel.h"
@@ -84,7 +85,7 @@ void take_colours(PointCloud& cloud, std::vector<double> rows, double full) {
     else cloud.warnings.push_back("the colours are neither whole numbers from 0 to 255 nor numbers from 0 to 1; they were left out");
 }
 
-void take_columns(PointCloud& cloud, std::vector<double> values, std::size_t width, std::size_t columns) {
+void take_columns(PointCloud& cloud, std::vector<double> values, std::size_t width, std::size_t columns, bool may_have_intensity) {
     const std::size_t count = cloud.count();
     if (count == 0) return;
     const auto kind_at = [&](std::size_t first) { return kind_of_triples(values.data() + first, width, count); };
@@ -92,7 +93,7 @@ void take_columns(PointCloud& cloud, std::vector<double> values, std::size_t wid
         const TripleKind second = kind_at(1);
         return kind_at(0) != TripleKind::unit_vectors && (second == TripleKind::bytes || second == TripleKind::unit_vectors || second == TripleKind::zeros);
     };
-    std::size_t next = (columns == 7 || columns == 10) && is_shifted() ? 1 : 0;
+    std::size_t next = may_have_intensity && (columns == 7 || columns == 10) && is_shifted() ? 1 : 0;
     if (next == 1) cloud.warnings.push_back("column 4 (intensity) was left out");
     for (; next + 3 <= width; next += 3) {
         const TripleKind kind = kind_at(next);

@@ -24,7 +24,7 @@ TripleKind kind_of_triples(const double* rows, std::size_t stride, std::size_t c
 void take_colours(PointCloud& cloud, std::vector<double> rows, double full = 0);
 
 /// Makes normals and colours of the `width` columns behind x, y, z, or leaves them out, with a warning. values: count x width. `columns`: of the text, which
-/// may have more.
-void take_columns(PointCloud& cloud, std::vector<double> values, std::size_t width, std::size_t columns);
+/// may have more. may_have_intensity: column 4 of 7 or 10 may be a number of its own, before the triples.
+void take_columns(PointCloud& cloud, std::vector<double> values, std::size_t width, std::size_t columns, bool may_have_intensity);
 
 }  // namespace lcl

@@ -4,6 +4,9 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <charconv>
+#include <string_view>
+#include <system_error>
 
 #include "host/io/point_columns.h"
 #include "host/io/text_rows.h"
@@ -37,20 +40,21 @@ std::size_t column_count(const TextRows& rows) {
     return cells.size();
 }
 
-PointCloud read_rows(const TextRows& rows, bool grid_may_follow) {
+PointCloud read_rows(const TextRows& rows, FileFormat format) {
     const std::size_t columns = column_count(rows), most = rows.most_rows(columns), width = std::min(columns, most_columns) - 3;
     PointCloud cloud;
     cloud.points.resize(3 * most);
     std::vector<double> further(width * most);
     std::vector<NumberColumn> targets(columns);
     for (std::size_t c = 0; c < 3 + width; ++c) targets[c] = c < 3 ? NumberColumn{&cloud.points[c], 3} : NumberColumn{&further[c - 3], width};
-    const std::size_t count = rows.read(targets, grid_may_follow);
+    const bool is_pts = format == FileFormat::pts;
+    const std::size_t count = rows.read(targets, !is_pts);
     if (count < most)
         cloud.warnings.push_back(rows.place(rows.place_of(count)) + "the lines from here on are a scanner's range grid, not points; they were left out");
     cloud.points.resize(3 * count);
     further.resize(width * count);
     require_finite(cloud, rows);
-    if (width > 0) take_columns(cloud, std::move(further), width, columns);
+    if (width > 0) take_columns(cloud, std::move(further), width, columns, is_pts);
     return cloud;
 }
 
@@ -122,7 +126,7 @@ PointCloud read_xyz(const InputBytes& input) {
     if (scan.remaining() > 1 && scan.at()[0] == '/' && scan.at()[1] == '/') scan.skip_line();
     scan.skip_space();
     TextRows rows(scan, '#');
-    return rows.count_lines(input.splitting) > 0 ? read_rows(rows, true) : PointCloud();
+    return rows.count_lines(input.splitting) > 0 ? read_rows(rows, FileFormat::xyz) : PointCloud();
 }
 
 PointCloud read_pts(const InputBytes& input) {
@@ -136,7 +140,7 @@ PointCloud read_pts(const InputBytes& input) {
     if (found != given)
         scan.fail(first, "the first line says " + std::to_string(given) + (given == 1 ? " point, " : " points, ") + std::to_string(found) +
                              (found == 1 ? " line follows" : " lines follow") + ": correct the number, or the lines");
-    return found > 0 ? read_rows(rows, false) : PointCloud();
+    return found > 0 ? read_rows(rows, FileFormat::pts) : PointCloud();
 }
 
 PointCloud read_csv_points(const InputBytes& input) {

@@ -4,6 +4,7 @@
 #include "host/io/text_rows.h"
 
 #include <algorithm>
+#include <limits>
 
 #include "host/parallel.h"
 

@@ -136,7 +136,7 @@ struct FitOptions {
 struct FitReport {
     lcl_status status = LCL_OK;        ///< LCL_OK, LCL_ERROR_NOT_CONVERGED, LCL_ERROR_SINGULAR or LCL_ERROR_INDEFINITE
     bool converged = false;            ///< max <= tolerance x diagonal; false with LCL_OK where max_vertices came first
-    std::string message;               ///< one sentence where the tolerance is not reached; "" otherwise
+    std::string message;               ///< one sentence where the tolerance is not reached or a solve failed; "" otherwise
     double rms = 0, p95 = 0, max = 0;  ///< distances of the points to the limit surface
     double diagonal = 0;               ///< of the vertices of the approximation
     std::int64_t points = 0;           ///< points that were measured
@@ -147,7 +147,6 @@ struct FitReport {
     int vertices = 0, faces = 0;       ///< of the control mesh
     int creases = 0;                   ///< of the control mesh
     double alpha = 0;                  ///< Catmull-Clark: the one in use
-                                       ///< of the control mesh
     int rounds = 0, iterations = 0;    ///< solves, and iterations of all of them
     double interpolation_error = 0;    ///< largest |limit point - vertex|; NaN for least squares
     int approximation_vertices = 0;    ///< what the engine gave, mended
@@ -338,7 +337,7 @@ inline FitReport detail::FitCall::finish(lcl_status status) const {
     FitReport report;
     report.status = status;
     report.converged = report_.converged != 0;
-    report.message = report_.message[0] || status == LCL_OK ? report_.message : lcl_last_error();
+    report.message = status == LCL_OK ? report_.message : lcl_last_error();
     report.rms = report_.rms;
     report.p95 = report_.p95;
     report.max = report_.max;
