@@ -3,6 +3,7 @@
 #include <limits>
 
 #include "tests/capi_support.h"
+#include "tests/shapes/clouds.h"
 
 using namespace capi_test;
 
@@ -205,4 +206,23 @@ TEST_CASE("closest points refuse points that are not finite", "[closest]") {
     refuse(lcl_limit_surface_closest(surface.get(), 1, far, 0, &out), LCL_ERROR_BAD_INPUT, "point 0 is more than 1e12 times as far away");
     refuse(lcl_limit_surface_closest(surface.get(), 2, nullptr, 0, &out), LCL_ERROR_INVALID_ARGUMENT, "points is NULL");
     succeed(lcl_limit_surface_closest(surface.get(), 0, nullptr, 0, &out));
+}
+
+TEST_CASE("the limit points of the vertices lie on the surface", "[closest]") {
+    const lcl_scheme which = GENERATE(LCL_SCHEME_DOO_SABIN, LCL_SCHEME_CATMULL_CLARK, LCL_SCHEME_LOOP);
+    std::vector<shapes::Shape> all = {shapes::wave_cloud(7).shape, shapes::sphere_cloud(2).shape, shapes::octahedron()};
+    all.push_back(all[0]);  // every vertex of the boundary a corner
+    all.back().features.boundary = lcl::BoundaryRule::fixed;
+    all.push_back(all[1]);  // long thin faces beside short ones
+    for (std::size_t i = 0; i < all.back().mesh.positions.size(); i += 3) all.back().mesh.positions[i + 2] = 20 * std::pow(all.back().mesh.positions[i + 2], 3);
+    all.push_back(all[2]);  // all edges of one face sharp
+    all.back().features.creases = {{all[2].mesh.face_vertices[0], all[2].mesh.face_vertices[1]}, {all[2].mesh.face_vertices[1], all[2].mesh.face_vertices[2]}};
+    for (const shapes::Shape& shape : all) {
+        CAPTURE(shape.name, which);
+        const lcl_scheme_options options = scheme(which);
+        std::vector<double> limit(shape.mesh.positions.size());
+        succeed(lcl_limit_points(make_operator(shape, &options).get(), shape.mesh.positions.data(), 0, 3, LCL_PRECISION_DOUBLE, limit.data(), 0));
+        const Found found = closest(make_surface(shape, which).get(), limit);
+        for (std::size_t v = 0; v < found.count(); ++v) CHECK(std::fabs(found.distances[v]) <= 1e-5 * diagonal_of(shape));  // slow convergence at high valence
+    }
 }
