@@ -130,7 +130,8 @@ private:
 struct Limits {
     double tolerance;   ///< of removed vertices and boundaries; DBL_MAX: none
     float turn;         ///< of a triangle's normal, degrees
-    bool keeps_shapes;  ///< no slivers, no edge much longer than its neighbours
+    bool keeps_shapes;  ///< no slivers
+    bool is_graded;     ///< no edge much longer than its neighbours
 };
 
 void collapse(FitMesh& mesh, const Limits& limits, std::size_t least, const std::function<bool(std::size_t)>& progress) {
@@ -147,8 +148,8 @@ void collapse(FitMesh& mesh, const Limits& limits, std::size_t least, const std:
     if (limits.keeps_shapes) {
         decimater.add(aspect);
         decimater.module(aspect).set_aspect_ratio(largest_aspect);
-        decimater.add(grading);
     }
+    if (limits.is_graded) decimater.add(grading);
     decimater.add(boundary);
     decimater.module(boundary).set_tolerance(limits.tolerance);
     if (limits.tolerance < DBL_MAX) {
@@ -178,9 +179,9 @@ void simplify(FitMesh& mesh, const SimplifyOptions& options) {
         mesh.property(given, vertex) = mesh.point(vertex);
         mesh.point(vertex) *= scale;
     }
-    collapse(mesh, {options.tolerance * scale, 45, true}, least_vertices, options.progress);
+    collapse(mesh, {options.tolerance * scale, 45, true, options.is_graded}, least_vertices, options.progress);
     // Beyond the tolerance the mesh keeps its shapes for as long as it can.
-    for (const Limits& limits : {Limits{DBL_MAX, 45, true}, Limits{DBL_MAX, 90, false}, Limits{DBL_MAX, 180, false}})
+    for (const Limits& limits : {Limits{DBL_MAX, 45, true, options.is_graded}, Limits{DBL_MAX, 90, false, false}, Limits{DBL_MAX, 180, false, false}})
         if (options.max_vertices > 0 && mesh.n_vertices() > options.max_vertices) collapse(mesh, limits, options.max_vertices, options.progress);
     for (const OpenMesh::VertexHandle vertex : mesh.vertices()) mesh.point(vertex) = mesh.property(given, vertex);
     mesh.remove_property(given);

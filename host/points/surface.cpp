@@ -106,6 +106,7 @@ private:
         tell(SurfacePhase::simplify, 0);
         SimplifyOptions simplify_options;
         simplify_options.tolerance = tolerance();
+        simplify_options.is_graded = options_.crease_angle_degrees > 0;  // curves along creases swing where short edges meet long ones
         const bool will_insert = options_.fit == FitKind::interpolate;
         simplify_options.max_vertices = static_cast<std::size_t>(will_insert ? room_to_insert * options_.max_vertices : options_.max_vertices);
         if (options_.max_vertices > 0) simplify_options.max_vertices = std::max<std::size_t>(4, simplify_options.max_vertices);
