@@ -17,7 +17,7 @@ struct SimplifyOptions {
 };
 
 /// Half-edge collapses in the order of their quadric error (Garland & Heckbert 1997; OpenMesh's decimater), so that the vertices that are left are some of
-/// those that were there. Within the tolerance no collapse turns a triangle's normal by more than 45 degrees, leaves slivers, and the boundary stays where it
+/// those that were there. Within the tolerance no collapse turns a triangle's normal by more than 45 degrees or leaves slivers, and the boundary stays where it
 /// was; beyond it these give way one after the other. Parts of the surface, their handles and boundary loops stay, so more than max_vertices may be left. 20 to
 /// 100 microseconds a vertex.
 void simplify(FitMesh& mesh, const SimplifyOptions& options);
