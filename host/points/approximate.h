@@ -23,8 +23,8 @@ struct Approximation {
     std::vector<std::string> warnings;
 };
 
-/// progress: fraction, negative where unknown; false stops (Cancelled). BadInput where the engine finds no surface or fails, InvalidArgument for its options
-/// and for an engine that breaks its contract, OutOfMemory.
+/// progress: fraction, negative where unknown; false stops (Cancelled). BadInput where the engine finds no surface or fails, InvalidArgument for its options,
+/// Error for an engine that breaks its contract, OutOfMemory.
 Approximation approximate(const lcl_engine& engine, const PointCloud& cloud, const EngineOptions& options, const std::function<bool(double)>& progress);
 
 }  // namespace lcl
