@@ -226,3 +226,12 @@ TEST_CASE("the limit points of the vertices lie on the surface", "[closest]") {
         for (std::size_t v = 0; v < found.count(); ++v) CHECK(std::fabs(found.distances[v]) <= 1e-5 * diagonal_of(shape));  // slow convergence at high valence
     }
 }
+
+TEST_CASE("closest points are found on a surface that has shrunk to a line", "[closest]") {
+    shapes::Shape line = shapes::grid_quads(60, 60);
+    for (std::size_t i = 0; i < line.mesh.positions.size(); i += 3) line.mesh.positions[i + 1] = line.mesh.positions[i + 2] = 0;
+    const LimitSurface surface = make_surface(line, LCL_SCHEME_CATMULL_CLARK);
+    const double x = line.mesh.positions[3 * static_cast<std::size_t>(line.mesh.vertex_count / 2)];
+    const Found found = closest(surface.get(), {x, 0.5, 0});
+    CHECK_THAT(found.distances[0], Catch::Matchers::WithinAbs(0.5, 0.05));  // along the line it may stop anywhere near
+}

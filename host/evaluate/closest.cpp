@@ -110,8 +110,8 @@ float ClosestSearch::normalised(double coordinate, std::size_t axis) const {
 /// A unit square of a chart, or its triangle, and its sides in space.
 struct ClosestSearch::Cell {
     Index chart = 0;
-    int a = 0, b = 0;  ///< where it begins: 0 or -1
-    double length_a = 0, length_b = 0;
+    int a = 0, b = 0;                   ///< where it begins: 0 or -1
+    double length_a = 0, length_b = 0;  ///< normalised
 
     /// Seeds along the sides, for a distance of `spacing`; triangles have as many along both.
     std::array<int, 2> grid(double spacing, bool is_triangle) const {
@@ -147,8 +147,8 @@ std::vector<ClosestSearch::Cell> ClosestSearch::find_cells() {
     evaluate_all(
         cells.size(), [&](std::size_t i) { return charts_.place(cells[i].chart, cells[i].a + middle, cells[i].b + middle); },
         [&](std::size_t i, const Batch& batch, std::size_t row) {
-            cells[i].length_a = batch.length_a(row);
-            cells[i].length_b = batch.length_b(row);
+            cells[i].length_a = batch.length_a(row) / surface_.size();
+            cells[i].length_b = batch.length_b(row) / surface_.size();
         });
     return cells;
 }
@@ -157,8 +157,11 @@ std::vector<ClosestSearch::Cell> ClosestSearch::find_cells() {
 void ClosestSearch::place_seeds() {
     const bool are_triangles = charts_.are_triangles();
     const std::vector<Cell> cells = find_cells();
-    double area = 0;
-    for (const Cell& cell : cells) area += cell.length_a * cell.length_b / (are_triangles ? 2 : 1);
+    double area = 0, longest = 0;
+    for (const Cell& cell : cells) {
+        area += cell.length_a * cell.length_b / (are_triangles ? 2 : 1);
+        longest = std::max({longest, cell.length_a, cell.length_b});
+    }
     const double wanted = std::max(least_seeds, static_cast<double>(cells.size())), middle = are_triangles ? 1.0 / 3 : 0.5;
     const auto count = [&](double spacing) {
         double sum = 0;
@@ -168,15 +171,15 @@ void ClosestSearch::place_seeds() {
         }
         return sum;
     };
-    double spacing = std::sqrt(area / wanted);
-    while (count(spacing) > most_seeds_factor * wanted) spacing *= 1.5;  // long thin charts have many along them
+    double spacing = area > 0 ? std::sqrt(area / wanted) : longest / finest_grid;  // a surface that has shrunk to a line
+    while (count(spacing) > most_seeds_factor * wanted) spacing *= 1.5;            // long thin charts have many along them
     for (const Cell& cell : cells) {
         const auto [na, nb] = cell.grid(spacing, are_triangles);
         const double radius = (cell.length_a / na + cell.length_b / nb) / 2;
         for (int j = 0; j < nb; ++j)
             for (int i = 0; i < (are_triangles ? na - j : na); ++i) {
                 seeds_->places.push_back(charts_.place(cell.chart, cell.a + (i + middle) / na, cell.b + (j + middle) / nb));
-                seeds_->radii.push_back(static_cast<float>(radius / surface_.size()));
+                seeds_->radii.push_back(static_cast<float>(radius));
             }
     }
 }
