@@ -1,10 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // limitcl surface, as scripts see it. Most cases take the faces of the first mesh from a file (given_faces_engine.c), so that they run on every machine; those
 // of the engines that people use are at the end and say so where none was built.
-#include <chrono>
-#include <csignal>
 #include <iomanip>
-#include <thread>
 
 #include "tests/cli_support.h"
 
@@ -583,15 +580,7 @@ TEST_CASE("Ctrl-C ends an engine at work, with nothing written", "[cli][cli_surf
     std::vector<std::string> words = {
         "env", std::string("LIMITCL_ENGINE_DIR=") + LIMITCL_TEST_ENGINES, program(), "surface", "-o", "out.obj", "--report", "report.json"};
     words.insert(words.end(), arguments.begin(), arguments.end());
-    const pid_t child = start(folder, words);
-    std::this_thread::sleep_for(std::chrono::milliseconds(1500));
-    REQUIRE(kill(child, SIGINT) == 0);
-    int status = 0;
-    REQUIRE(waitpid(child, &status, 0) == child);
-    REQUIRE(WIFEXITED(status));
-    CHECK(WEXITSTATUS(status) == 130);
-    CHECK_FALSE(folder.has("out.obj"));
-    CHECK(json::parse(folder.read("report.json")).at("status") == "cancelled");
+    check_interrupt(folder, words);
 }
 
 TEST_CASE("the engines that are installed find the surface of a cloud by themselves", "[cli][cli_surface][engine]") {

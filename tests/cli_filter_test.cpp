@@ -1,10 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The commands of the mesh expansion, as scripts see them. Results are compared with plain loops in double over the rows of A.
-#include <chrono>
-#include <csignal>
 #include <functional>
 #include <map>
-#include <thread>
 
 #include "tests/capi_support.h"
 #include "tests/cli_support.h"
@@ -245,16 +242,6 @@ std::vector<std::vector<double>> csv_rows(const std::string& text, const std::st
         rows.push_back(row);
     }
     return rows;
-}
-
-/// Waits a while, presses Ctrl-C, and waits for the end.
-int exit_code_after_interrupt(pid_t child, int milliseconds) {
-    std::this_thread::sleep_for(std::chrono::milliseconds(milliseconds));
-    REQUIRE(kill(child, SIGINT) == 0);
-    int status = 0;
-    REQUIRE(waitpid(child, &status, 0) == child);
-    REQUIRE(WIFEXITED(status));
-    return WEXITSTATUS(status);
 }
 
 }  // namespace

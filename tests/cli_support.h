@@ -4,13 +4,16 @@
 
 #include <algorithm>
 #include <array>
+#include <chrono>
 #include <cmath>
+#include <csignal>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <sstream>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include <fcntl.h>
@@ -91,6 +94,23 @@ inline pid_t start(const Folder& folder, const std::vector<std::string>& words) 
     }
     close(silent[0]);
     return child;
+}
+
+/// Waits a while, presses Ctrl-C, and waits for the end.
+inline int exit_code_after_interrupt(pid_t child, int milliseconds) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(milliseconds));
+    REQUIRE(kill(child, SIGINT) == 0);
+    int status = 0;
+    REQUIRE(waitpid(child, &status, 0) == child);
+    REQUIRE(WIFEXITED(status));
+    return WEXITSTATUS(status);
+}
+
+/// Starts a program that writes out.obj and report.json, presses Ctrl-C after a while, and checks that it ends as interrupted, with nothing written.
+inline void check_interrupt(const Folder& folder, const std::vector<std::string>& words) {
+    CHECK(exit_code_after_interrupt(start(folder, words), 1500) == 130);
+    CHECK_FALSE(folder.has("out.obj"));
+    CHECK(json::parse(folder.read("report.json")).at("status") == "cancelled");
 }
 
 inline json report_of(const Outcome& outcome) {

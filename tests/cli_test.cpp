@@ -1,8 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The program as scripts see it: exit codes, files, streams, report. It is run as a process of its own.
-#include <chrono>
-#include <csignal>
-#include <thread>
 
 #include "tests/cli_support.h"
 
@@ -530,15 +527,7 @@ TEST_CASE("Ctrl-C is exit code 130 with nothing written", "[cli][exit]") {
         GENERATE(values<std::vector<std::string>>({{"grid.obj", "--solver", "pia", "--sweeps", "3000000"}, {"-", "--format", "obj"}}));
     std::vector<std::string> words = {program(), "interpolate", "-o", "out.obj", "--report", "report.json"};
     words.insert(words.end(), arguments.begin(), arguments.end());
-    const pid_t child = start(folder, words);
-    std::this_thread::sleep_for(std::chrono::milliseconds(1500));
-    REQUIRE(kill(child, SIGINT) == 0);
-    int status = 0;
-    REQUIRE(waitpid(child, &status, 0) == child);
-    REQUIRE(WIFEXITED(status));
-    CHECK(WEXITSTATUS(status) == 130);
-    CHECK_FALSE(folder.has("out.obj"));
-    CHECK(json::parse(folder.read("report.json")).at("status") == "cancelled");
+    check_interrupt(folder, words);
 }
 
 TEST_CASE("real meshes are interpolated to tolerance", "[cli][meshes]") {
