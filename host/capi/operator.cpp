@@ -56,12 +56,9 @@ std::unique_ptr<LimitSystem> make_system(lcl_context_s& context, lcl_mesh_s& mes
     plan.subset = vertex_marks(given.subset, given.subset_count, mesh.file.mesh.vertex_count, "subset");
     plan.owned = vertex_marks(given.owned, given.owned_count, mesh.file.mesh.vertex_count, "owned");
     const auto make = [&] { return make_limit_system(context.context, mesh.file.mesh, mesh.topology(), mesh.features(), scheme, plan); };
-    auto system = make();
-    if (given.alpha_auto != 0 && scheme.scheme == Scheme::catmull_clark && wants_other_alpha(*system)) {
-        scheme.alpha = auto_alpha;
-        system = make();
-        context.write_log(LCL_LOG_INFO, "alpha 0.5, since 0 is singular, indefinite or nearly so on this mesh");
-    }
+    if (given.alpha_auto == 0) return make();
+    auto system = make_with_auto_alpha(scheme, make);
+    if (scheme.alpha != 0) context.write_log(LCL_LOG_INFO, "alpha 0.5, since 0 is singular, indefinite or nearly so on this mesh");
     return system;
 }
 

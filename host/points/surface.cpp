@@ -150,11 +150,9 @@ private:
     /// Empty where the operator has no inverse; the solve's status says why.
     std::vector<double> solve(const PolygonMesh& mesh, const Topology& topology, const Features& features) {
         const Stopwatch watch(report().seconds_solve);
-        std::unique_ptr<LimitSystem> system = make_limit_system(context_, mesh, topology, features, scheme_, {});
-        if (options_.alpha_auto && report().rounds == 0 && scheme_.scheme == Scheme::catmull_clark && wants_other_alpha(*system)) {
-            scheme_.alpha = auto_alpha;
-            system = make_limit_system(context_, mesh, topology, features, scheme_, {});
-        }
+        const auto make = [&] { return make_limit_system(context_, mesh, topology, features, scheme_, {}); };
+        const bool chooses_alpha = options_.alpha_auto && report().rounds == 0;
+        const std::unique_ptr<LimitSystem> system = chooses_alpha ? make_with_auto_alpha(scheme_, make) : make();
         report().alpha = scheme_.alpha;
         SolveOptions solve_options = options_.solve;
         solve_options.diagonal = report().diagonal;

@@ -90,6 +90,15 @@ const Spectrum& spectrum_of(LimitSystem& system);
 /// Whether alpha 0 should give way to auto_alpha: A is singular, indefinite or nearly singular.
 bool wants_other_alpha(LimitSystem& system);
 
+/// The system that make() gives with scheme.alpha 0, or where that should give way with auto_alpha, which then stands in `scheme`, for make() to look at.
+template <class Make>
+std::unique_ptr<LimitSystem> make_with_auto_alpha(SchemeOptions& scheme, const Make& make) {
+    std::unique_ptr<LimitSystem> system = make();
+    if (scheme.scheme != Scheme::catmull_clark || !wants_other_alpha(*system)) return system;
+    scheme.alpha = auto_alpha;
+    return make();
+}
+
 /// 1/min(2 a_ii - 1) where the smooth rows are diagonally dominant, else the block Hager-Higham estimate (Higham & Tisseur 2000), some ten short solves at the
 /// first call. Unsupported where has_inverse_norm is false.
 const InverseNorm& inverse_norm_of(LimitSystem& system);
